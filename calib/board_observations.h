@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,12 @@ std::vector<int> evenly_spaced(const std::vector<int>& frames, int most);
 
 /// The views of the given frames (ascending).
 BoardObservations at_frames(const BoardObservations& observations, const std::vector<int>& frames);
+
+/// The corners for which `kept(view, place of the corner in it)` holds. Views whose corners then do
+/// not determine the board's pose are left out.
+BoardObservations with_corners(
+    BoardObservations observations,
+    const std::function<bool(const BoardView& view, std::size_t corner)>& kept);
 
 /// Sorts the views by frame, then camera, and checks that they can be used for calibration: sizes
 /// given, camera and corner indices in range, no camera twice in a frame, pixels finite and inside

@@ -25,6 +25,10 @@ struct CalibrationOptions {
   BoardWarp warp = BoardWarp::known;      ///< free: the board's warp is estimated too
   bool reject_outliers = true;            ///< see calib/calibration/outliers.h
   bool check_input = true;                ///< false: skip the checks (repeated solves)
+  /// Random effects beside the unknowns (docs/uncertainty.md): the shape of the board, and its
+  /// motion between the exposures of the cameras. With either, errors that are smooth over the
+  /// board too.
+  bool board_shape = false, motion = false;
   /// The corner noise is known to be white (simulated corners): use the bound as covariance.
   bool white_noise = false;
 };
@@ -40,8 +44,10 @@ struct CalibrationOptions {
 /// with at least three frames per parameter, its small-sample form with fewer (kind "jackknife"). A
 /// held parameter has no variance. If σ is estimated and there is a prior, σ and the solution are
 /// found in turn; the degrees of freedom do not count the part of the parameters that the prior
-/// determines. Throws Error, naming what is undetermined, if observations and prior do not
-/// determine the rig.
+/// determines. With random effects the rig is that of their cost (calib/noise/random_effects.h),
+/// the bound its inverse information and the covariance clustered as above; noise and residuals of
+/// the summary stay those of the cost above. Throws Error, naming what is undetermined, if
+/// observations and prior do not determine the rig.
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options = {});
 
 }  // namespace vernier

@@ -33,16 +33,30 @@ struct PairOutlier {
   double residual_px = 0;  ///< its Sampson distance
 };
 
+/// Random effects of a calibration with the board's shape or its motion, and their components
+/// (docs/uncertainty.md). Standard deviations; 0 for what was not estimated.
+struct CalibrationEffects {
+  double white_px = 0;                   ///< of a coordinate on its own
+  double field_px = 0;                   ///< of an error that is smooth over the board
+  double field_length_m = 0;             ///< over this length
+  double motion_rad = 0;                 ///< of the board between exposures, about each axis
+  double motion_m = 0;                   ///< along each axis
+  double shape_plane_m = 0;              ///< of the board's corners along its x and y
+  double shape_height_m = 0;             ///< along z
+  std::vector<Eigen::Vector3d> shape_m;  ///< found, one per point of the target; empty without
+};
+
 /// Summary of a calibration.
 struct CalibrationSummary {
-  std::string source = "board";         ///< board, pairs or combined
-  double pixel_sigma_px = 0;            ///< standard deviation of a pixel coordinate
-  double rms_px = 0;                    ///< root mean square residual, per coordinate
-  double chi2 = 0;                      ///< sum of squared residuals over pixel_sigma_px²
-  int dof = 0;                          ///< residuals less parameters, board poses included
-  int views = 0;                        ///< frames used
-  double prior_chi2 = 0;                ///< the priors' part of the cost; 0 without a prior
-  int prior_dof = 0;                    ///< number of parameters with a prior
+  std::string source = "board";  ///< board, pairs or combined
+  double pixel_sigma_px = 0;     ///< standard deviation of a pixel coordinate
+  double rms_px = 0;             ///< root mean square residual, per coordinate
+  double chi2 = 0;               ///< sum of squared residuals over pixel_sigma_px²
+  int dof = 0;                   ///< residuals less parameters, board poses included
+  int views = 0;                 ///< frames used
+  double prior_chi2 = 0;         ///< the priors' part of the cost; 0 without a prior
+  int prior_dof = 0;             ///< number of parameters with a prior
+  std::optional<CalibrationEffects> effects;
   std::vector<std::string> held;        ///< parameters that were not estimated
   std::vector<CornerOutlier> outliers;  ///< excluded corners
   std::vector<PairOutlier> pair_outliers;

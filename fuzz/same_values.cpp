@@ -138,6 +138,12 @@ void require_same(const RigEstimate& a, const RigEstimate& b) {
     require(s.dof == t.dof && s.views == t.views && same(s.chi2, t.chi2) &&
                 same(s.rms_px, t.rms_px) && same(s.pixel_sigma_px, t.pixel_sigma_px),
             "the figures of the calibration are kept");
+    require(s.effects.has_value() == t.effects.has_value() &&
+                (!s.effects || (same(s.effects->white_px, t.effects->white_px) &&
+                                same(s.effects->motion_m, t.effects->motion_m) &&
+                                same(s.effects->shape_height_m, t.effects->shape_height_m) &&
+                                s.effects->shape_m.size() == t.effects->shape_m.size())),
+            "random effects are kept");
     require(
         s.outliers.size() == t.outliers.size() && s.pair_outliers.size() == t.pair_outliers.size(),
         "outliers are kept");

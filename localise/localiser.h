@@ -130,6 +130,10 @@ std::vector<std::string> localiser_names();
 using LocaliserFactory =
     std::function<std::unique_ptr<Localiser>(const TopologicalMap&, const LocaliserOptions&)>;
 
+/// Whether the histograms of a method are of lines in the image:
+/// LocaliserOptions::image_histograms.
+bool uses_image_histograms(std::string_view method);
+
 /// What a method needs of views that not every view holds.
 struct ViewNeeds {
   bool corners = false;  ///< PlaceView::corners, of the map and of queries

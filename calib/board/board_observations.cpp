@@ -90,6 +90,24 @@ BoardObservations at_frames(const BoardObservations& observations, const std::ve
   return part;
 }
 
+BoardObservations with_corners(
+    BoardObservations observations,
+    const std::function<bool(const BoardView& view, std::size_t corner)>& kept) {
+  for (BoardView& view : observations.views) {
+    BoardView fewer{view.frame, view.camera, view.image, {}, {}};
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (!kept(view, i)) continue;
+      fewer.ids.push_back(view.ids[i]);
+      fewer.pixels_px.push_back(view.pixels_px[i]);
+    }
+    view = std::move(fewer);
+  }
+  std::erase_if(observations.views, [&](const BoardView& view) {
+    return !determines_pose(observations.target_m, view.ids);
+  });
+  return observations;
+}
+
 void check_and_sort(BoardObservations& observations) {
   auto& views = observations.views;
   std::stable_sort(views.begin(), views.end(), [](const BoardView& a, const BoardView& b) {

@@ -18,6 +18,7 @@
 #include "calib/calibration/change_findings.h"
 #include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/effects.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/residual_diagnosis.h"
@@ -340,7 +341,6 @@ void add_trust_warnings(const Solution& s,
   const auto add = [&](const std::optional<std::string>& warning) {
     if (warning) trust_warnings.push_back(*warning);
   };
-  doubt_structure(s, *estimate.calibration);
   add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
   if (options.pixel_sigma_px > 0 && estimate.calibration->rms_px <= largest_corner_noise_px) {
     add(noise_warning(s.cost.equations.chi2, degrees_of_freedom(s), options.pixel_sigma_px));
@@ -356,7 +356,14 @@ void add_trust_warnings(const Solution& s,
 
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options) {
   check_and_sort(observations);
+  check_effects(options, observations.size_px.size());
   Solution s = solve(std::move(observations), options);
+  CalibrationSummary summary = summary_of(s, options);
+  if (options.check_input) doubt_structure(s, summary);
+  if (has_effects(options)) {
+    move_to_effects(options, s.observations, s.problem, s.state, s.cost, summary);
+    s.bound = minimum_variance_bound(s.cost.equations, s.cost.names);
+  }
   RigEstimate estimate;
   estimate.rig = s.state.rig;
   const std::vector<std::string> names = parameter_names(s.state.rig);
@@ -368,7 +375,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
       options.white_noise ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
                           : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
-  estimate.calibration = summary_of(s, options);
+  estimate.calibration = std::move(summary);
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());

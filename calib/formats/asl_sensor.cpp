@@ -47,15 +47,6 @@ OpenCvIntrinsics asl_intrinsics(const YamlNode& root) {
   return in;
 }
 
-Pose read_pose(const YamlNode& node, double unit_m) {
-  const Eigen::Matrix4d T = node.matrix(4, 4);
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw Error(node.place(), "its last row is not 0 0 0 1", "correct it");
-  }
-  return {nearest_rotation(T.topLeftCorner<3, 3>(), node.place()),
-          translation(T.topRightCorner<3, 1>(), unit_m, node.place())};
-}
-
 PlacedCamera read_camera(const std::filesystem::path& file, const ImportOptions& options) {
   const YamlNode root = YamlNode::parse(read_whole(file), file.string());
   if (root.has("sensor_type") && root.at("sensor_type").text() != "camera") {
@@ -68,7 +59,7 @@ PlacedCamera read_camera(const std::filesystem::path& file, const ImportOptions&
                                      file.string(), options.model);
   const bool by_folder = file.filename() == "sensor.yaml" && file.has_parent_path();
   placed.camera.name = (by_folder ? file.parent_path().filename() : file.stem()).string();
-  placed.T_camera_reference = read_pose(root.at("T_BS"), options.unit_m).inverse();
+  placed.T_camera_reference = imported_pose(root.at("T_BS"), options.unit_m).inverse();
   return placed;
 }
 

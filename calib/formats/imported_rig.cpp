@@ -9,6 +9,8 @@
 #include "calib/camera.h"
 #include "calib/camera/rig_limits.h"
 #include "calib/error.h"
+#include "calib/formats/yaml_node.h"
+#include "calib/pose.h"
 
 namespace vernier::internal {
 
@@ -47,6 +49,15 @@ Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::
                 "correct it, or the unit of length");
   }
   return t_m;
+}
+
+Pose imported_pose(const YamlNode& matrix, double unit_m) {
+  const Eigen::Matrix4d T = matrix.matrix(4, 4);
+  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw Error(matrix.place(), "its last row is not 0 0 0 1", "correct it");
+  }
+  return {nearest_rotation(T.topLeftCorner<3, 3>(), matrix.place()),
+          translation(T.topRightCorner<3, 1>(), unit_m, matrix.place())};
 }
 
 }  // namespace vernier::internal

@@ -14,6 +14,8 @@
 
 namespace vernier::internal {
 
+class YamlNode;
+
 /// Information that another tool's file may lack.
 struct ImportOptions {
   std::optional<CameraModel> model = {};  ///< default: the smallest that represents it exactly
@@ -46,5 +48,9 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& pl
 /// The position of a camera in metres from a file's unit. Throws Error(`place`) beyond
 /// ± `most_value`.
 Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::string& place);
+
+/// A pose written as a matrix [R t; 0 0 0 1]. Throws Error naming the node for another matrix, and
+/// like the two above.
+Pose imported_pose(const YamlNode& matrix, double unit_m);
 
 }  // namespace vernier::internal

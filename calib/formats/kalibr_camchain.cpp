@@ -50,16 +50,6 @@ OpenCvIntrinsics read_intrinsics(const YamlNode& node) {
   return in;
 }
 
-Pose read_step(const YamlNode& node, double unit_m) {
-  const YamlNode matrix = node.at("T_cn_cnm1");
-  const Eigen::Matrix4d T = matrix.matrix(4, 4);
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw Error(matrix.place(), "its last row is not 0 0 0 1", "correct it");
-  }
-  return {nearest_rotation(T.topLeftCorner<3, 3>(), matrix.place()),
-          translation(T.topRightCorner<3, 1>(), unit_m, matrix.place())};
-}
-
 std::string camera_text(const Camera& camera, const std::string& others) {
   const OpenCvIntrinsics in = opencv_intrinsics(camera);
   const bool none = in.coefficients.empty();
@@ -103,8 +93,9 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const Import
     for (const char* key : {"T_cam_imu", "timeshift_cam_imu"}) {
       if (node.has(key)) imported.notes.push_back(node.at(key).place() + " is ignored");
     }
-    const Pose T =
-        i == 0 ? Pose{} : read_step(node, options.unit_m) * cameras.back().T_camera_reference;
+    const Pose T = i == 0 ? Pose{}
+                          : imported_pose(node.at("T_cn_cnm1"), options.unit_m) *
+                                cameras.back().T_camera_reference;
     cameras.push_back({camera, T});
   }
   if (names.size() != cameras.size()) {

@@ -102,6 +102,42 @@ void parse_prior_terms(const Node& node, CalibrationSummary& summary) {
   }
 }
 
+using EffectKey = std::pair<const char*, double CalibrationEffects::*>;
+constexpr std::array<EffectKey, 7> effect_keys{
+    {{"white_px", &CalibrationEffects::white_px},
+     {"field_px", &CalibrationEffects::field_px},
+     {"field_length_m", &CalibrationEffects::field_length_m},
+     {"motion_rad", &CalibrationEffects::motion_rad},
+     {"motion_m", &CalibrationEffects::motion_m},
+     {"shape_plane_m", &CalibrationEffects::shape_plane_m},
+     {"shape_height_m", &CalibrationEffects::shape_height_m}}};
+
+CalibrationEffects parse_effects(const Node& node) {
+  CalibrationEffects effects;
+  for (const auto& [key, member] : effect_keys)
+    effects.*member = not_negative(node.at(key), most_value);
+  if (!node.has("shape_m")) return effects;
+  const Node shape = node.at("shape_m");
+  const Eigen::VectorXd values = shape.vector();
+  if (values.size() % 3 != 0) throw Error(shape.place(), "is not x, y, z of each point", remedy);
+  check_bounded(values, most_value, shape);
+  for (Eigen::Index i = 0; i < values.size(); i += 3) {
+    effects.shape_m.emplace_back(values.segment<3>(i));
+  }
+  return effects;
+}
+
+Json effects_json(const CalibrationEffects& effects) {
+  Json json;
+  for (const auto& [key, member] : effect_keys) json[key] = effects.*member;
+  if (effects.shape_m.empty()) return json;
+  json["shape_m"] = Json::array();
+  for (const Eigen::Vector3d& s : effects.shape_m) {
+    for (const double value : s) json["shape_m"].push_back(value);
+  }
+  return json;
+}
+
 }  // namespace
 
 CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
@@ -113,6 +149,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   summary.dof = count(node.at("dof"));
   summary.views = count(node.at("views"));
   parse_prior_terms(node, summary);
+  if (node.has("effects")) summary.effects = parse_effects(node.at("effects"));
   summary.held = parse_held(node, rig);
   if (node.has("outliers")) {
     for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
@@ -188,6 +225,7 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
     json["prior_chi2"] = s.prior_chi2;
     json["prior_dof"] = s.prior_dof;
   }
+  if (s.effects) json["effects"] = effects_json(*s.effects);
   if (!s.held.empty()) json["held"] = s.held;
   json["outliers"] = Json::array();
   for (const CornerOutlier& o : s.outliers) {

@@ -14,6 +14,7 @@
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/frame_rows.h"
 #include "calib/noise/restricted_likelihood.h"
+#include "calib/noise/rig_knowledge.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 #include "calib/statistics/distributions.h"
@@ -35,37 +36,17 @@ BoardObservations thinned(BoardObservations observations) {
   if (points <= most_points) return observations;
   std::vector<bool> kept(points, false);
   for (std::size_t i = 0; i < most_points; ++i) kept[i * points / most_points] = true;
-  for (BoardView& view : observations.views) {
-    BoardView fewer = view;
-    fewer.ids.clear();
-    fewer.pixels_px.clear();
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      if (!kept[static_cast<std::size_t>(view.ids[i])]) continue;
-      fewer.ids.push_back(view.ids[i]);
-      fewer.pixels_px.push_back(view.pixels_px[i]);
-    }
-    view = std::move(fewer);
-  }
-  std::erase_if(observations.views, [&](const BoardView& view) {
-    return !determines_pose(observations.target_m, view.ids);
+  return with_corners(std::move(observations), [&](const BoardView& view, std::size_t corner) {
+    return kept[static_cast<std::size_t>(view.ids[corner])];
   });
-  return observations;
 }
 
-RigKnowledge knowledge_of(const RigEstimate& estimate,
-                          const Eigen::MatrixXd& free,
-                          Eigen::Index unknowns) {
-  if (estimate.evidence->priors.empty()) return {};
-  RigKnowledge all{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
-  const Eigen::Index n = free.cols();
+std::vector<RigPrior> priors_of(const RigEstimate& estimate) {
+  std::vector<RigPrior> priors;
   for (const GaussianRigPrior& known : estimate.evidence->priors) {
-    const RigPrior prior = rig_prior(estimate.rig, known);
-    const PriorOffset offset = prior_offset(prior, estimate.rig);
-    const Eigen::MatrixXd J = offset.by_rig * free;
-    all.information.topLeftCorner(n, n) += J.transpose() * prior.information * J;
-    all.score.head(n) += J.transpose() * prior.information * offset.delta;
+    priors.push_back(rig_prior(estimate.rig, known));
   }
-  return all;
+  return priors;
 }
 
 }  // namespace
@@ -82,7 +63,7 @@ RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts pa
       frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
   const Eigen::Index unknowns = frames.empty() ? 0 : frames[0].by_rig.cols();
   return {std::move(frames), evidence.observations.target_m, parts,
-          knowledge_of(estimate, free, unknowns)};
+          knowledge_of_priors(priors_of(estimate), estimate.rig, free, unknowns)};
 }
 
 std::vector<FrameMotion> CornerNoiseEstimate::moved() const {

@@ -11,6 +11,7 @@
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/field_spectrum.h"
 #include "calib/noise/frame_rows.h"
+#include "calib/noise/rig_knowledge.h"
 #include "calib/noise/rotated_frame.h"
 #include "calib/noise/scaled_factor.h"
 #include "calib/solver/normal_equations.h"
@@ -197,6 +198,7 @@ NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) cons
   NoiseSolution result;
   ReducedNormalEquations& sum = result.equations;
   sum.information = MatrixXd::Zero(rig_ + shape_, rig_ + shape_);
+  sum.held_poses_diagonal = VectorXd::Zero(rig_ + shape_);
   sum.scores = MatrixXd::Zero(rig_ + shape_, static_cast<Index>(frames_.size()));
   std::vector<RotatedFrame> rows;
   for (const Frame& frame : frames_) {
@@ -204,6 +206,9 @@ NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) cons
         rotated_frame(frame.rows, noise, of_views(frame, spectra), parts_.motion, shape_));
     sum.frame_information.emplace_back(f.A.transpose() * f.QA);
     sum.information += sum.frame_information.back();
+    sum.held_poses_diagonal +=
+        sum.frame_information.back().diagonal() +
+        (f.Z.rightCols<6>().transpose() * f.A).colwise().squaredNorm().transpose();
     sum.scores.col(static_cast<Index>(rows.size()) - 1) = f.A.transpose() * f.Qr;
     sum.frame_chi2.push_back(f.r.dot(f.Qr));
     sum.chi2 += sum.frame_chi2.back();
@@ -218,11 +223,11 @@ NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) cons
                           shape_m_.cwiseAbs2().cwiseQuotient(variances).sum() +
                           score.dot(result.step);
   result.gradient = VectorXd::Zero(static_cast<Index>(components().size()));
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
+  for (std::size_t i = 0; want != Want::step && i < frames_.size(); ++i) {
     add_gradient(frames_[i], rows[i], S.times_inverse_upper(rows[i].QA), result.step, spectra,
                  noise, result);
   }
-  if (parts_.shape) {
+  if (parts_.shape && want != Want::step) {
     const VectorXd spread =
         S.inverse().diagonal().tail(shape_) + (shape_m_ + result.step.tail(shape_)).cwiseAbs2();
     const Index at = result.gradient.size() - 2;

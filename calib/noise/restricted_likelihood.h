@@ -10,17 +10,11 @@
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/field_spectrum.h"
 #include "calib/noise/frame_rows.h"
+#include "calib/noise/rig_knowledge.h"
 #include "calib/noise/rotated_frame.h"
 #include "calib/solver/normal_equations.h"
 
 namespace vernier::internal {
-
-/// What is known of the rig's free directions z besides the corners: the cost zᵀ P z + 2 pᵀ z +
-/// constant. Empty: nothing.
-struct RigKnowledge {
-  Eigen::MatrixXd information;  ///< P
-  Eigen::VectorXd score;        ///< p
-};
 
 /// Motion of the board before the exposure of the second camera, in one frame, relative to the
 /// first exposure; the first three of each are a rotation about the centre of the corners (rad),
@@ -73,7 +67,11 @@ class RestrictedLikelihood {
   Eigen::VectorXd logs(const CornerNoise& noise) const;
   CornerNoise noise(const Eigen::VectorXd& logs) const;
 
-  enum class Want { gradient, solution };
+  enum class Want {
+    gradient,  ///< no pose steps
+    step,      ///< no gradient and no motions
+    solution   ///< everything
+  };
   /// Throws Error if poses or rig are not determined.
   NoiseSolution at(const CornerNoise& noise, Want want) const;
 

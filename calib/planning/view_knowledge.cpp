@@ -17,6 +17,7 @@
 #include "calib/rig_prior.h"
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/linearised_cost.h"
 #include "calib/solver/normal_equations.h"
 
 namespace vernier::internal {
@@ -37,12 +38,11 @@ std::vector<Eigen::MatrixXd> in_directions(const std::vector<Eigen::MatrixXd>& v
 }
 
 /// That of all priors of a calibration; empty without one.
-Eigen::MatrixXd prior_information(const RigEstimate& calibration, const Eigen::MatrixXd& free) {
+Eigen::MatrixXd information_of_priors(const RigEstimate& calibration, const Eigen::MatrixXd& free) {
   Eigen::MatrixXd information;
   for (const GaussianRigPrior& known : calibration.evidence->priors) {
     const RigPrior prior = rig_prior(calibration.rig, known);
-    const Eigen::MatrixXd J = prior_offset(prior, calibration.rig).by_rig * free;
-    const Eigen::MatrixXd P = J.transpose() * prior.information * J;
+    const Eigen::MatrixXd P = prior_information(prior, calibration.rig, free);
     information = information.size() > 0 ? Eigen::MatrixXd(information + P) : P;
   }
   return information;
@@ -76,7 +76,7 @@ ViewKnowledge knowledge_of(const RigEstimate& calibration,
       reduced_normal_equations(evidence.observations, state, 1).frame_information, free);
   const PosePopulation population =
       pose_population(evidence.T_first_board, evidence.observations.target_m);
-  const Eigen::MatrixXd prior = prior_information(calibration, free);
+  const Eigen::MatrixXd prior = information_of_priors(calibration, free);
   for (std::uint32_t pool = 0; pool < pool_count; ++pool) {
     const std::vector<Eigen::MatrixXd> views =
         population_views(calibration.rig, evidence.observations.target_m, evidence.warp_m,

@@ -15,14 +15,16 @@
 
 namespace vernier::internal {
 
+Eigen::MatrixXd prior_information(const RigPrior& prior, const Rig& rig, const Eigen::MatrixXd& E) {
+  const Eigen::MatrixXd J = prior_offset(prior, rig).by_rig * E;
+  return J.transpose() * prior.information * J;
+}
+
 void add_priors(ReducedNormalEquations& equations,
                 const std::vector<RigPrior>& priors,
                 const Rig& rig,
                 const Eigen::MatrixXd& E) {
-  for (const RigPrior& prior : priors) {
-    const Eigen::MatrixXd J = prior_offset(prior, rig).by_rig * E;
-    add_prior(equations, J.transpose() * prior.information * J);
-  }
+  for (const RigPrior& prior : priors) add_prior(equations, prior_information(prior, rig, E));
 }
 
 LinearisedCost linearised_cost(const BoardObservations& observations,

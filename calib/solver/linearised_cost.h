@@ -25,6 +25,9 @@ struct LinearisedCost {
   ReducedNormalEquations equations;  ///< of z, at the problem's noise
 };
 
+/// That of a prior at `rig`, in the directions E.
+Eigen::MatrixXd prior_information(const RigPrior& prior, const Rig& rig, const Eigen::MatrixXd& E);
+
 /// Adds the information of the priors at `rig`, in the directions E.
 void add_priors(ReducedNormalEquations& equations,
                 const std::vector<RigPrior>& priors,

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/board_observations.h"
@@ -81,8 +83,13 @@ std::optional<BoardVariances> variances_of(const RigEstimate& estimate,
 /// Adds the boards of one split that its calibration did not see.
 class SplitOfBoards {
  public:
-  SplitOfBoards(const BoardObservations& observations, BoardStand stand)
-      : observations_(observations), stand_(stand) {}
+  SplitOfBoards(const BoardObservations& observations,
+                const std::vector<int>& frames,
+                BoardStand stand)
+      : observations_(observations), stand_(stand) {
+    std::vector<SeenPair> seen = seen_pairs(observations, frames);
+    for (std::size_t f = 0; f < frames.size(); ++f) seen_[frames[f]] = std::move(seen[f]);
+  }
 
   void add(const RigEstimate& estimate,
            const std::vector<int>& frames,
@@ -92,7 +99,7 @@ class SplitOfBoards {
     result.noise_not_found += !noise.fit.converged;
     ++result.splits;
     for (const int frame : frames) {
-      const SeenPair seen = seen_pairs(observations_, {frame})[0];
+      const SeenPair& seen = seen_.at(frame);
       if (seen.size() < 4) continue;
       add(estimate, HeldOutBoard(observations_, frame, seen, estimate), noise.fit.noise,
           static_cast<int>(seen.size()), result);
@@ -120,6 +127,7 @@ class SplitOfBoards {
   }
 
   const BoardObservations& observations_;
+  std::map<int, SeenPair> seen_;  // by frame
   BoardStand stand_;
 };
 
@@ -141,7 +149,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
                 std::to_string(training) + " training frames of " + std::to_string(n),
                 "give at least 3, and fewer than there are");
   }
-  SplitOfBoards boards(observations, options.stand);
+  SplitOfBoards boards(observations, frames, options.stand);
   HeldOutBoardsResult result;
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {

@@ -83,11 +83,13 @@ class Boards {
       std::vector<Eigen::Vector2d>& pixels = predicted_.views[v].pixels_px;
       for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] += residuals[v][i];
     }
-    for (const int frame : frames_of(observations)) {
-      SeenPair seen = seen_pairs(observations, {frame}).front();
-      if (seen.size() < corners_of_a_board) continue;
-      frames_.push_back(frame);
-      seen_.push_back(std::move(seen));
+    const std::vector<int> frames = frames_of(observations);
+    std::vector<SeenPair> seen = seen_pairs(observations, frames);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      if (seen[f].size() < corners_of_a_board) continue;
+      frames_.push_back(frames[f]);
+      before_.push_back(board_errors(estimated_, target_m_, seen[f]));
+      seen_.push_back(std::move(seen[f]));
     }
   }
 
@@ -112,7 +114,7 @@ class Boards {
     for (std::size_t b = 0; b < size(); ++b) {
       auto of_real = board_errors(told, target_m_, seen_[b]);
       auto of_simulated = board_errors(told, target_m_, simulated[b]);
-      const auto real_before = board_errors(estimated_, target_m_, seen_[b]);
+      const auto& real_before = before_[b];
       const auto simulated_before = board_errors(estimated_, target_m_, simulated[b]);
       if (!of_real || !of_simulated || !real_before || !simulated_before) return {};
       const double in_reality = of_real->of_size - real_before->of_size;
@@ -130,6 +132,7 @@ class Boards {
   std::uint64_t seed_;
   std::vector<int> frames_;
   std::vector<SeenPair> seen_;
+  std::vector<std::optional<BoardErrors>> before_;  // real ones, with the rig as estimated
 };
 
 /// Sizes of errors, ascending, each with its board: medians of resampled boards without sorting.
@@ -170,6 +173,22 @@ struct ChangeSums {
   double correlation() const { return both / std::sqrt(simulated2 * real2); }
 };
 
+/// All errors of the lengths on boards, over draws.
+struct LengthErrors {
+  SortedSizes real, simulated;
+
+  void add(const std::vector<BothErrors>& boards) {
+    for (std::size_t b = 0; b < boards.size(); ++b) {
+      real.add(boards[b].real, b);
+      simulated.add(boards[b].simulated, b);
+    }
+  }
+  void sort() {
+    real.sort();
+    simulated.sort();
+  }
+};
+
 std::vector<int> times_of(std::span<const std::size_t> boards, std::size_t count) {
   std::vector<int> times(count, 0);
   for (const std::size_t board : boards) ++times[board];
@@ -181,7 +200,7 @@ void compare(const std::vector<std::optional<std::vector<BothErrors>>>& draws,
              std::size_t boards,
              std::uint64_t seed,
              InjectedErrorLevel& level) {
-  SortedSizes real, simulated;
+  LengthErrors lengths;
   std::vector<ChangeSums> changes(boards);
   for (const auto& draw : draws) {
     if (!draw) {
@@ -189,26 +208,24 @@ void compare(const std::vector<std::optional<std::vector<BothErrors>>>& draws,
       continue;
     }
     ++level.draws;
+    lengths.add(*draw);
     for (std::size_t b = 0; b < boards; ++b) {
       const BothErrors& errors = (*draw)[b];
-      real.add(errors.real, b);
-      simulated.add(errors.simulated, b);
       changes[b] += {errors.change_real * errors.change_simulated,
                      errors.change_simulated * errors.change_simulated,
                      errors.change_real * errors.change_real};
     }
   }
-  real.sort();
-  simulated.sort();
+  lengths.sort();
   const std::vector<int> once(boards, 1);
-  level.median_real = real.median(once);
-  level.median_simulated = simulated.median(once);
+  level.median_real = lengths.real.median(once);
+  level.median_simulated = lengths.simulated.median(once);
   const BootstrapOptions bootstrap{.resamples = 1000, .seed = seed};
   level.ratio_95 = bootstrap_interval(
       boards,
       [&](std::span<const std::size_t> chosen) {
         const std::vector<int> times = times_of(chosen, boards);
-        return real.median(times) / simulated.median(times);
+        return lengths.real.median(times) / lengths.simulated.median(times);
       },
       bootstrap);
   const auto sum = [&](std::span<const std::size_t> chosen) {
@@ -255,16 +272,12 @@ InjectedErrorResult inject_calibration_error(
   const RigSampler sampler(estimate, "injected error");
   InjectedErrorResult result;
   result.boards = static_cast<int>(boards.size());
-  SortedSizes real, simulated;
-  for (std::size_t b = 0; b < before->size(); ++b) {
-    real.add((*before)[b].real, b);
-    simulated.add((*before)[b].simulated, b);
-  }
-  real.sort();
-  simulated.sort();
+  LengthErrors lengths;
+  lengths.add(*before);
+  lengths.sort();
   const std::vector<int> once(before->size(), 1);
-  result.median_real = real.median(once);
-  result.median_simulated = simulated.median(once);
+  result.median_real = lengths.real.median(once);
+  result.median_simulated = lengths.simulated.median(once);
   for (const double psi_c : options.psi_c) {
     InjectedErrorLevel level;
     level.psi_c = psi_c;

@@ -7,12 +7,15 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/ordered_parallel.h"
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
 #include "calib/error.h"
+#include "calib/rig.h"
 #include "calib/rig_difference.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/distributions.h"
@@ -25,6 +28,8 @@ namespace {
 
 struct ComparedHalves {
   RigDifference honest, mvb;
+  std::vector<std::string> names;
+  Eigen::VectorXd difference;
 };
 
 RigEstimate calibrated(const BoardObservations& observations,
@@ -46,8 +51,8 @@ std::optional<ComparedHalves> compare_halves(const BoardObservations& observatio
       return rig_difference(a.rig, chosen_covariance(a, choice).value(), b.rig,
                             chosen_covariance(b, choice).value());
     };
-    return ComparedHalves{compared_by(CovarianceChoice::honest),
-                          compared_by(CovarianceChoice::mvb)};
+    return ComparedHalves{compared_by(CovarianceChoice::honest), compared_by(CovarianceChoice::mvb),
+                          parameter_names(a.rig), difference(a.rig, b.rig)};
   } catch (const Error&) {
     return {};
   }
@@ -88,7 +93,11 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
       ++result.failed;
       continue;
     }
-    ++result.splits;
+    if (++result.splits == 1) {
+      result.names = halves->names;
+      result.rms_difference = Eigen::VectorXd::Zero(halves->difference.size());
+    }
+    result.rms_difference += halves->difference.cwiseAbs2();
     result.dof = std::max(result.dof, halves->honest.dof);
     const HalvesDistance distance{halves->honest.mahalanobis2, halves->mvb.mahalanobis2};
     result.distances.push_back(distance);
@@ -102,6 +111,7 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
     throw Error("halves", "no split could be calibrated",
                 "give more views, or a model with fewer parameters");
   }
+  result.rms_difference = (result.rms_difference / result.splits).cwiseSqrt().eval();
   result.nees_mean_honest /= result.splits;
   result.nees_mean_mvb /= result.splits;
   result.inside_95_honest = static_cast<double>(inside_honest) / result.splits;

@@ -66,12 +66,40 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
   for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
 }
 
+/// The random effects of the calibration, one a line.
+std::string effects_text(const CalibrationEffects& effects) {
+  std::string text =
+      fmt::format("random effects: {:.3f} px white, {:.3f} px smooth over {:.0f} mm\n",
+                  effects.white_px, effects.field_px, 1e3 * effects.field_length_m);
+  if (effects.motion_m > 0) {
+    text += fmt::format(
+        "  the board moved between exposures: {:.2f} mm and {:.2f} mrad rms about each axis\n",
+        1e3 * effects.motion_m, 1e3 * effects.motion_rad);
+  }
+  if (!effects.shape_m.empty()) {
+    text += fmt::format("  the board is uneven: {:.3f} mm in height, {:.3f} mm in its plane, rms\n",
+                        1e3 * effects.shape_height_m, 1e3 * effects.shape_plane_m);
+  }
+  return text;
+}
+
+/// Whatever solves the stored corners again does so without random effects: they are not stored.
+KeepEvidence kept_evidence(const CalibrateArguments& options, Session& session) {
+  if (options.no_evidence) return KeepEvidence::no;
+  if (!options.solver.board_shape && !options.solver.motion) return KeepEvidence::yes;
+  session.warn(
+      "the rig file holds no corners: check, combine and report would solve them without the "
+      "board's shape and motion; keep the corners file (vernier detect)");
+  return KeepEvidence::no;
+}
+
 void run(const CalibrateArguments& options, Session& session) {
   if (!options.pairs.empty()) {
     refuse_options(*options.board.app, board_options, "not used with --pairs, which need no board");
     refuse_options(*options.board.app, std::array{"--model", "--know"},
                    "with --pairs this comes from the prior");
-    refuse_options(*options.board.app, std::array{"--warp", "--no-model-check"},
+    refuse_options(*options.board.app,
+                   std::array{"--warp", "--no-model-check", "--board-shape", "--motion"},
                    "only valid for views of a board");
     refuse_options(*options.board.app, std::array{"--pixel-sigma"},
                    "the noise is taken from the pairs file and scaled by the residuals");
@@ -80,8 +108,9 @@ void run(const CalibrateArguments& options, Session& session) {
   }
   check_output_is_not_input(files_named(options.board), options.output);
   check_output_is_not_input({options.solver.prior}, options.output);
-  const CalibrationOptions calibration = calibration_options(options.solver, session);
+  CalibrationOptions calibration = calibration_options(options.solver, session);
   RigEstimate estimate = calibrate(load(options.board, session), calibration);
+  calibration.board_shape = calibration.motion = false;  // lens models are compared without
   ModelComparison comparison;
   if (!options.no_model_check) {
     comparison = compare_models(estimate, calibration);
@@ -91,10 +120,11 @@ void run(const CalibrateArguments& options, Session& session) {
       warnings.push_back("lens models were not compared: " + comparison.not_compared);
     }
   }
-  write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
+  write_rig(estimate, options.output, kept_evidence(options, session));
   report_warnings(estimate, session);
   Json json = rig_json(estimate);
   std::string text = rig_table(estimate);
+  if (estimate.calibration->effects) text += effects_text(*estimate.calibration->effects);
   if (!comparison.richer.empty()) {
     json["model_comparison"] = comparison_json(comparison);
     text += comparison_table(comparison);

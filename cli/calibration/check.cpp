@@ -190,12 +190,16 @@ void run(const CheckArguments& options, Session& session) {
     for (const std::string& failure : part.failures) session.add_trust_warning(failure);
   };
   if (solved.from_file) add("file", check_file(*solved.from_file, solved.estimate));
-  if (options.no_mrcal) {
-    add("mrcal", {nullptr, "mrcal check skipped", "--no-mrcal", {}});
+  const bool effects = solved.how.board_shape || solved.how.motion;
+  if (effects) {
+    const std::string reason = "knows no board's shape or motion";
+    add("mrcal", {nullptr, "mrcal check skipped: mrcal " + reason, reason, {}});
+    add("monte_carlo", {nullptr, "Monte Carlo check skipped: it " + reason, reason, {}});
   } else {
-    add("mrcal", check_by_mrcal(problem, session));
+    add("mrcal", options.no_mrcal ? CheckSection{nullptr, "mrcal check skipped", "--no-mrcal", {}}
+                                  : check_by_mrcal(problem, session));
+    add("monte_carlo", check_by_monte_carlo(problem, options.copies));
   }
-  add("monte_carlo", check_by_monte_carlo(problem, options.copies));
   CalibrationOptions how = solved.how;
   how.reject_outliers = false;  // already removed
   how.check_input = false;      // already checked

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibration/check_halves.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,10 @@ CheckSection check_halves(const BoardObservations& observations,
   CheckSection part;
   part.json = halves_json(result);
   part.json["seed"] = options.seed;
+  for (std::size_t i = 0; i < result.names.size(); ++i) {
+    part.json["rms_differences"][result.names[i]] =
+        result.rms_difference[static_cast<Eigen::Index>(i)];
+  }
   part.text = fmt::format(
       "halves of the {} frames, calibrated apart: {} splits{}, {} degrees of freedom\n"
       "  {:<24} {:>10} {:>10} {:>14}\n",

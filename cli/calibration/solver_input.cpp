@@ -75,6 +75,10 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
                    "rig file whose parameters and covariance are used as a prior");
   verb->add_flag("--warp", input.warp, "also estimate the board warp");
   verb->add_flag("--keep-outliers", input.keep_outliers, "do not reject outlier corners");
+  verb->add_flag("--board-shape", input.board_shape,
+                 "estimate the uneven shape of the board, a displacement of each corner");
+  verb->add_flag("--motion", input.motion,
+                 "let the board move between the exposures of the cameras (hand-held)");
 }
 
 GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {
@@ -102,6 +106,8 @@ CalibrationOptions calibration_options(const SolverInput& input, Session& sessio
   }
   if (input.warp) options.warp = BoardWarp::free;
   options.reject_outliers = !input.keep_outliers;
+  options.board_shape = input.board_shape;
+  options.motion = input.motion;
   return options;
 }
 

@@ -11,7 +11,8 @@
 namespace vernier::cli {
 
 /// Throws Error(map_name) if a map was recorded with cameras of another size, focal length (by more
-/// than 5 %) or baseline (10 %) than the rig that asks. Maps hold lines in metres, but what a view
+/// than 5 %), lens (corners of the image that look 5 degrees elsewhere) or baseline (10 %) than the
+/// rig that asks. Maps hold lines in metres, but what a view
 /// can hold of them depends on its cameras; a new calibration of the same rig differs by far less.
 void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name);
 

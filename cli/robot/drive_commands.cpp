@@ -67,9 +67,11 @@ DriveCommand command_of(const JsonNode& node, const DifferentialDrive& drive) {
   return command_of(of_wheels, values, drive, node.place());
 }
 
+constexpr const char* separators = ", \t";  // blanks beside a comma are none of the fields
+
 /// Which of the forms a header of CSV has.
 bool header_of_wheels(std::string_view line, const std::string& place) {
-  const std::vector<std::string_view> names = split_fields(line, ",");
+  const std::vector<std::string_view> names = split_fields(line, separators);
   for (std::size_t form = 0; form < forms.size(); ++form) {
     if (std::equal(names.begin(), names.end(), forms[form].begin(), forms[form].end())) return form;
   }
@@ -80,7 +82,7 @@ DriveCommand command_of_csv(std::string_view line,
                             bool of_wheels,
                             const DifferentialDrive& drive,
                             const std::string& place) {
-  const std::vector<std::string_view> fields = split_fields(line, ",");
+  const std::vector<std::string_view> fields = split_fields(line, separators);
   std::array<double, 3> values{};
   if (fields.size() != values.size()) throw Error(place, "has not 3 fields", remedy);
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +39,7 @@
 #include "sim/world.h"
 #include "sim/world_file.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/stretch_correlation.h"
 #include "stereo/rectification.h"
@@ -66,6 +68,12 @@ RenderedView view_of(const RenderedWorld& world,
   return rendered;
 }
 
+/// Of the pixels, in which the sensor is full.
+double saturated_share(const stereo::GreyLevels& image) {
+  const auto full = std::count(image.values.begin(), image.values.end(), 255.0F);
+  return static_cast<double>(full) / static_cast<double>(image.values.size());
+}
+
 Json pose_json(const std::string& folder,
                const Pose2D& pose,
                int trial,
@@ -76,7 +84,18 @@ Json pose_json(const std::string& folder,
           {"y_m", pose.y_m},
           {"heading_deg", pose.heading_rad * 180 / std::numbers::pi},
           {"exposure", rendered.pair.exposure},
+          {"saturated", saturated_share(rendered.pair.left)},
           {"edges", rendered.edges.both.size()}};
+}
+
+/// A doubt if an image shows little but white.
+void doubt_saturation(const Json& poses, Session& session) {
+  constexpr double too_much = 0.5;  // of the pixels
+  double most = 0;
+  for (const Json& pose : poses) most = std::max(most, pose["saturated"].get<double>());
+  if (most <= too_much) return;
+  session.add_trust_warning(
+      fmt::format("up to {:.0f} % of an image is saturated; lower --exposure", 100 * most));
 }
 
 /// What was rendered, in a line.
@@ -197,6 +216,7 @@ void run(RenderArguments options, Session& session) {
     made["comparison"] = comparison_json(report);
     text += "\n" + comparison_text(report);
   }
+  doubt_saturation(made["poses"], session);
   outputs.commit();
   session.result(made, text);
 }

@@ -36,18 +36,6 @@ struct StudyArguments {
   }
 };
 
-/// A cell that was never told a rig says nothing.
-void tell_failed_calibrations(const StudyResults& results, Session& session) {
-  for (const CellResult& cell : results.cells) {
-    const auto& record = cell.calibrations;
-    if (!record || record->calibrations == 0 || record->failed < record->calibrations) continue;
-    session.add_trust_warning(
-        fmt::format("{}: all {} calibrations failed, the first by: {}; give more views, or others",
-                    cell.cell.label.empty() ? "the study" : cell.cell.label, record->calibrations,
-                    record->why_failed));
-  }
-}
-
 void print(const Study& study, const fs::path& folder, Session& session) {
   const StudyResults results = study_results(study, folder);
   tell_failed_trials(results, session);

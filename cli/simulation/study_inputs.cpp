@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/error_place.h"
 #include "calib/base/fingerprint.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
@@ -67,8 +68,23 @@ std::vector<StudyInput> named_files(const StudyFile& study) {
   return inputs;
 }
 
+/// Where the study names it.
+std::string place_of(const StudyInput& input, const StudyFile& study) {
+  switch (input.role) {
+    case InputRole::world:
+      return place_of(study, "world.file");
+    case InputRole::rig:
+      return place_of(study, study.cells[0].told.truth.empty() ? "rig.file" : "rig.truth");
+    case InputRole::told:
+      return place_of(study, "rig.file");
+    case InputRole::corners:
+      break;
+  }
+  return place_of(study, "calibration.observations");
+}
+
 /// The file itself, beside the study file.
-fs::path file_of(const StudyInput& input, const fs::path& beside) {
+fs::path found_file(const StudyInput& input, const fs::path& beside) {
   if (input.role == InputRole::world) return find_world(input.named, beside);
   if (input.role != InputRole::corners) return find_rig(input.named, beside);
   const fs::path file = beside / input.named;
@@ -78,6 +94,10 @@ fs::path file_of(const StudyInput& input, const fs::path& beside) {
                 "give calibration.observations relative to the study file");
   }
   return file;
+}
+
+fs::path file_of(const StudyInput& input, const StudyFile& study, const fs::path& beside) {
+  return with_errors_of(place_of(input, study), [&] { return found_file(input, beside); });
 }
 
 /// Throws Error for a route without or with too many views, before anything is written.
@@ -131,6 +151,12 @@ void load(const StudyInput& input, const fs::path& file, Study& study, Session& 
     }
   } else if (input.role == InputRole::rig) {
     StudyRig rig = load_rig(file, session);
+    if (const std::size_t cameras = rig.estimate.rig.cameras.size(); cameras != 2) {
+      throw Error(place_of(input, study.file),
+                  fmt::format("{} is a rig of {} camera{}", file.string(), cameras,
+                              cameras == 1 ? "" : "s"),
+                  "name a rig of two cameras, as studies simulate pairs of images");
+    }
     study.rig = std::move(rig.estimate);
     study.rig_fingerprint = std::move(rig.fingerprint);
   } else if (input.role == InputRole::told) {
@@ -178,7 +204,7 @@ StudyInputs inputs_of_study(const std::string& text, const fs::path& place) {
   const StudyFile study = parse_study(text, place.string());
   StudyInputs inputs;
   for (const StudyInput& input : named_files(study)) {
-    inputs.emplace_back(input.copy, read_whole(file_of(input, place.parent_path())));
+    inputs.emplace_back(input.copy, read_whole(file_of(input, study, place.parent_path())));
   }
   if (!study.sources.empty()) inputs.emplace_back(sources_name, read_whole(study.sources));
   inputs.emplace_back(study_copy, text);  // last: it makes the folder a study's
@@ -210,8 +236,10 @@ Study load_study(const fs::path& file, Session& session) {
 }
 
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
-  return assemble(parse_study(text, place.string()), session,
-                  [&](const StudyInput& input) { return file_of(input, place.parent_path()); });
+  const StudyFile study = parse_study(text, place.string());
+  return assemble(study, session, [&](const StudyInput& input) {
+    return file_of(input, study, place.parent_path());
+  });
 }
 
 Study open_folder(const fs::path& folder, Session& session) {

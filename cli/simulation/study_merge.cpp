@@ -13,6 +13,7 @@
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
+#include "cli/simulation/study_run.h"
 #include "cli/simulation/study_table.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/store_rows.h"
@@ -114,6 +115,8 @@ void merge_studies(const std::vector<fs::path>& parts,
         "queries of the world ceiling are missing from the merged study; run " +
         shard_options(missing) + " and merge again");
   }
+  tell_failed_trials(results, session);
+  tell_failed_calibrations(results, session);
   session.result(study_json(study, results), study_table(study, results));
 }
 

@@ -25,18 +25,25 @@ void run_in_folder(const FolderClaim& claim,
   const StopSignal stop;
   int blocks_done = 0;
   job.stop = stop.token();
-  std::optional<Progress> ceilings, blocks;
+  std::optional<Progress> calibrations, ceilings, blocks;
+  job.calibration_progress = [&](int done, int total) {
+    if (!calibrations) calibrations.emplace(session, what + ": recorded calibrations");
+    calibrations->update(done, total);
+  };
   job.ceiling_progress = [&](int done, int total) {
+    calibrations.reset();
     if (!ceilings) ceilings.emplace(session, what + ": world ceiling queries");
     ceilings->update(done, total);
   };
   job.progress = [&](int done, int total) {
+    calibrations.reset();
     ceilings.reset();
     if (!blocks) blocks.emplace(session, what + ": blocks");
     blocks->update(done, total);
     blocks_done = done;
   };
   const auto end = [&] {
+    calibrations.reset();
     blocks.reset();
     claim.withdraw(job.shard);
     stop.end(fmt::format("after {} blocks, which are stored; go on with: {}", blocks_done,
@@ -65,11 +72,26 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
       continue;
     }
     session.add_trust_warning(fmt::format(
-        "{} failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
-        "settings says why",
+        "{} failed in {} of {} trials of cell \"{}\"; {}",
         sources.command.empty() && sources.own.empty() ? "the localiser"
                                                        : "the localiser or a source of error",
-        failed, cell.trials.size(), cell.cell.label));
+        failed, cell.trials.size(), cell.cell.label,
+        sources.calibration > 0
+            ? fmt::format("vernier localise with the same settings says why, unless they were told "
+                          "a rig that no cameras can have (psi_c = {:g})",
+                          sources.calibration)
+            : "vernier localise with the same settings says why"));
+  }
+}
+
+void tell_failed_calibrations(const StudyResults& results, Session& session) {
+  for (const CellResult& cell : results.cells) {
+    const auto& record = cell.calibrations;
+    if (!record || record->calibrations == 0 || record->failed < record->calibrations) continue;
+    if (cell.cell.experiment.sources.calibration == 0) continue;  // it was told the truth
+    session.add_trust_warning(
+        fmt::format("cell \"{}\": all {} calibrations failed, the first by: {}", cell.cell.label,
+                    record->calibrations, record->why_failed));
   }
 }
 

@@ -22,4 +22,7 @@ void run_in_folder(const FolderClaim& claim,
 /// calibration has.
 void tell_failed_trials(const StudyResults& results, Session& session);
 
+/// Says which cells have not a single calibration to tell: a reason not to trust them.
+void tell_failed_calibrations(const StudyResults& results, Session& session);
+
 }  // namespace vernier::cli

@@ -155,6 +155,7 @@ StudyResults confirm(const Tuning& tuning,
                 fmt::format("tune: confirmation of candidate {}", candidate + 1), session);
   StudyResults results = study_results(study, folder);
   tell_failed_trials(results, session);
+  tell_failed_calibrations(results, session);
   return results;
 }
 

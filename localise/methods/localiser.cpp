@@ -195,6 +195,8 @@ void register_localiser(const std::string& method, LocaliserFactory factory, Vie
   Registry::instance().add(method, std::move(factory), needs);
 }
 
+bool uses_image_histograms(std::string_view method) { return method.starts_with("pgh_baseline"); }
+
 bool needs_corners(std::string_view method, const LocaliserOptions& options) {
   return options.corners || Registry::instance().find(method).needs.corners;
 }

@@ -92,18 +92,14 @@ std::vector<EdgeDisparity> inverse_depths(const std::vector<EdgePoint>& edges,
 }
 
 /// Both ends in space with their covariance.
-MeasuredSegment placed(const SegmentDisparity& s, const OpenCvIntrinsics& k, double max_depth_m) {
+MeasuredSegment placed(const SegmentDisparity& s, const OpenCvIntrinsics& k) {
   MeasuredSegment result;
-  result.status = s.status;
-  if (s.status != SegmentStatus::placed) return result;
+  result.status = status_in_space(s);
+  if (result.status != SegmentStatus::placed) return result;
   Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Zero();
   for (int end = 0; end < 2; ++end) {
     const Vector2d& px = end == 0 ? s.left_px.a_px : s.left_px.b_px;
     const double d = end == 0 ? s.a_disparity_px : s.b_disparity_px;
-    if (!(d > 0)) {
-      result.status = SegmentStatus::behind;
-      return result;
-    }
     const double z = k.fx_px / d;
     const Vector3d p(z * (px.x() - k.cx_px) / k.fx_px, z * (px.y() - k.cy_px) / k.fy_px, z);
     J(3 * end, 2 * end) = z / k.fx_px;
@@ -111,14 +107,9 @@ MeasuredSegment placed(const SegmentDisparity& s, const OpenCvIntrinsics& k, dou
     J.block<3, 1>(3 * end, 4 + end) = -p / d;
     (end == 0 ? result.segment.a_m : result.segment.b_m) = p;
   }
-  result.independent_m2 = J * s.covariance_px2 * J.transpose();
-  const double a_z = result.segment.a_m.z(), b_z = result.segment.b_m.z();
-  const int farther = a_z > b_z ? 2 : 5;
-  result.segment.depth_sigma_m = std::sqrt(result.independent_m2(farther, farther));
-  result.segment.reliable = std::max(a_z, b_z) < max_depth_m;
-  result.relative_sigma = std::max(std::sqrt(result.independent_m2(2, 2)) / a_z,
-                                   std::sqrt(result.independent_m2(5, 5)) / b_z);
-  result.linear = result.relative_sigma <= SpaceSegmentOptions{}.max_relative;
+  const SpaceSegmentOptions usual;
+  state_independent_error(result, J, s.covariance_px2, usual);
+  judge_linearity(result, usual);
   return result;
 }
 
@@ -171,7 +162,7 @@ DepthSegments depth_segments(const Camera& camera,
   DepthSegments segments;
   for (const SegmentDisparity& s : segment_disparities(
            edges, edge_segments(edges), inverse_depths(edges, depth, k.fx_px, noise), how)) {
-    segments.in_space.push_back(placed(s, k, SpaceSegmentOptions{}.max_depth_m));
+    segments.in_space.push_back(placed(s, k));
     segments.image.push_back(s.left_px);
   }
   return segments;

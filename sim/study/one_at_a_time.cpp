@@ -120,8 +120,7 @@ void name_design(StudyCell& cell,
 
 /// The sources of the designs: those named, or all that are on.
 std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
-                                                   const OneAtATime& designs,
-                                                   const std::string& place) {
+                                                   const OneAtATime& designs) {
   std::vector<const SourceParameter*> chosen;
   const SourceSettings& sources = cell.experiment.sources;
   if (designs.sources.empty()) {
@@ -132,11 +131,12 @@ std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
   for (const std::string& name : designs.sources) {
     chosen.push_back(source_named(name));
     if (sources.*chosen.back()->value != 0) continue;
-    throw Error(place, "one_at_a_time.sources: sources." + name + " is 0, so it is off everywhere",
+    throw Error(designs.sources_place,
+                "one_at_a_time.sources: sources." + name + " is 0, so it is off everywhere",
                 "set it in [sources], or leave it out");
   }
   if (chosen.empty()) {
-    throw Error(place, "one_at_a_time: no source is on", "set one in [sources]");
+    throw Error(designs.sources_place, "one_at_a_time: no source is on", "set one in [sources]");
   }
   return chosen;
 }
@@ -157,13 +157,17 @@ OneAtATime read_one_at_a_time(const toml::table& table, const std::string& place
   if (read.swept && read.factors.empty()) {
     reader.fail(*table.get("factors"), "one_at_a_time.factors is empty", "list at least one");
   }
+  const auto place_of = [&](const char* key) {
+    const toml::node* node = table.get(key);
+    return fmt::format("{}:{}", place, (node ? node->source() : table.source()).begin.line);
+  };
+  read.sources_place = place_of("sources");
+  read.factors_place = place_of("factors");
   return read;
 }
 
-std::vector<StudyCell> one_at_a_time(const StudyCell& cell,
-                                     const OneAtATime& designs,
-                                     const std::string& place) {
-  const std::vector<const SourceParameter*> sources = chosen_sources(cell, designs, place);
+std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& designs) {
+  const std::vector<const SourceParameter*> sources = chosen_sources(cell, designs);
   const SourceSettings &all = cell.experiment.sources, none = [&] {
     SourceSettings off = no_sources();
     for (const SourceParameter& p : source_parameters()) {
@@ -200,7 +204,7 @@ std::vector<StudyCell> one_at_a_time(const StudyCell& cell,
       SourceSettings with = all;
       with.*p->value = factor * all.*p->value;
       if (with.*p->value > p->high || with.*p->value < p->low) {
-        throw Error(place,
+        throw Error(designs.factors_place,
                     fmt::format("one_at_a_time.factors: {} times sources.{} = {} is out of its "
                                 "range, {} to {}",
                                 factor, p->name, all.*p->value, p->low, p->high),

@@ -21,6 +21,7 @@ struct OneAtATime {
   bool swept = false;    ///< this source times each factor, beside all others; the same reference
   std::vector<std::string> sources;          ///< names; empty: all that are on
   std::vector<double> factors = {0.5, 2.0};  ///< of `swept`, neither 0 nor 1
+  std::string sources_place, factors_place;  ///< file and line of these keys, or of the table
 };
 
 /// Reads the table. Throws Error with file and line for unknown designs and sources, and factors
@@ -30,9 +31,7 @@ OneAtATime read_one_at_a_time(const toml::table& table, const std::string& place
 /// The cells of the designs around one cell, the references first: swept are "design" (as set, no
 /// source, only, all but, swept), "source" and "value". Throws Error if a named source is off, a
 /// value is out of the source's range, or no source is on.
-std::vector<StudyCell> one_at_a_time(const StudyCell& cell,
-                                     const OneAtATime& designs,
-                                     const std::string& place);
+std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& designs);
 
 /// Whether a cell is of a design, and whether `reference` is what it is compared with.
 bool has_design(const StudyCell& cell);

@@ -204,7 +204,7 @@ ExperimentSettings SettingsReader::read_settings(const toml::table& root,
   if (const auto* camera = section(root, "camera")) read_camera(*camera, settings.mount);
   if (const auto* localiser = section(root, "localiser")) read_localiser(*localiser, settings);
   if (const auto* histograms = section(root, "histograms")) {
-    const bool of_image = settings.method.starts_with("pgh_baseline");
+    const bool of_image = uses_image_histograms(settings.method);
     LocaliserOptions& options = settings.localiser;
     read_histograms(*histograms, of_image ? options.image_histograms : options.histograms);
   }

@@ -16,27 +16,24 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/base/instruction_set.h"
-#include "calib/base/ordered_parallel.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "sim/study/calibration_records.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/result_recorder.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_ranks.h"
-#include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
 #include "sim/study/work_units.h"
 #include "sim/study/worker_threads.h"
-#include "sim/told/fresh_calibrations.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -93,28 +90,6 @@ void check_processor(const StoredResults& stored, const StudyRun& run) {
                           "not be identical",
                           shortened(there), here),
               "continue in another folder, or give --allow-other-instruction-set");
-}
-
-/// Of the first trials of each cell with [calibration], which use the same calibrations.
-void record_calibrations(const Study& study,
-                         StudyScenes& scenes,
-                         const StoredResults& stored,
-                         const StudyRun& run,
-                         StudyStore& store) {
-  std::set<std::string> recorded;
-  for (const StudyCell& cell : study.file.cells) {
-    const auto calibrations = scenes.calibrations(cell);
-    if (!calibrations || run.stop.stop_requested()) continue;
-    const std::string key = calibration_key(study, cell);
-    if (stored.notes().count(key) > 0 || !recorded.insert(key).second) continue;
-    constexpr int enough = 100;
-    for_each_index(enough, run.threads, [&](std::size_t draw) {
-      if (!run.stop.stop_requested()) calibrations->of(static_cast<std::uint32_t>(draw));
-    });
-    if (run.stop.stop_requested()) return;
-    const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
-    store.set_note(name, note);
-  }
 }
 
 /// Computes units on the threads of an arena, each of which takes the next one when it is free.
@@ -219,10 +194,11 @@ void run_study(const Study& study, const StudyRun& run) {
 
   const std::vector<WorkUnit> queries = query_units(missing);
   std::vector<WorkUnit> blocks = block_units(missing);
-  ResultRecorder recorder(work, missing, run, *store);
   if (ranks) ranks->welcome(!blocks.empty());
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
-  record_calibrations(study, computer.scenes(), stored, run, *store);
+  record_calibrations(study, work, run, stored, computer.scenes(), store);
+  if (!store) return;  // stopped
+  ResultRecorder recorder(work, missing, run, *store);
   /// What is wanted next, where results decide how far a cell goes.
   const auto next_blocks = [&] {
     const bool decided = study.file.interval_width || run.first_blocks;

@@ -68,6 +68,8 @@ struct StudyRun {
   std::function<void(int done, int total)> progress;
   /// The same for the queries of the world ceilings, which are computed before the first block.
   std::function<void(int done, int total)> ceiling_progress;
+  /// The same for the calibrations that are recorded before (calibration_records.h).
+  std::function<void(int done, int total)> calibration_progress = {};
   /// Called when this process has become the writer of its store, before anything is computed; not
   /// if nothing is missing.
   std::function<void()> on_start = {};

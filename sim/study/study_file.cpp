@@ -51,6 +51,7 @@ class StudyReader : private SettingsReader {
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
   void add_designs(const toml::table& root, StudyFile& study) const;
+  void note_lines(const toml::table& root, StudyFile& study) const;
 
   SourceSettings sources_;  // initial values of the study's [sources]
 };
@@ -240,7 +241,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
     StudyCell result = read_cell(changed);
     result.swept = std::move(swept);
     result.settings = settings_of(result.experiment);
-    result.settings.merge(settings_of(result.told));
+    result.settings.merge(shown_settings_of(result.told));
     for (const std::string& key : study.sweep_keys) {
       if (key == "world.file") result.settings[key] = result.world;
     }
@@ -256,7 +257,7 @@ void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
   const OneAtATime designs = read_one_at_a_time(*node, place());
   std::vector<StudyCell> cells;
   for (const StudyCell& cell : study.cells) {
-    for (StudyCell& one : one_at_a_time(cell, designs, place())) cells.push_back(std::move(one));
+    for (StudyCell& one : one_at_a_time(cell, designs)) cells.push_back(std::move(one));
     const auto trials = static_cast<std::int64_t>(cells.size()) * study.trials;
     if (cells.size() <= most_cells && trials <= most_trials) continue;
     fail(*node,
@@ -266,12 +267,28 @@ void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
   study.cells = std::move(cells);
 }
 
+void StudyReader::note_lines(const toml::table& root, StudyFile& study) const {
+  const auto line = [](const auto& of) { return static_cast<int>(of.source().begin.line); };
+  study.place = place();
+  for (const auto& [name, node] : root) {
+    study.lines[std::string(name.str())] = line(name);
+    if (name.str() == "sweep" || !node.is_table()) continue;
+    for (const auto& [key, value] : *node.as_table()) {
+      study.lines[fmt::format("{}.{}", name.str(), key.str())] = line(key);
+    }
+  }
+  if (const auto* sweep = section(root, "sweep")) {
+    for (const auto& [key, value] : *sweep) study.lines[std::string(key.str())] = line(key);
+  }
+}
+
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
               "localiser", "histograms", "sweep", "one_at_a_time", "tune"},  // [tune]: sim/tuning
              "");
   StudyFile study;
+  note_lines(root, study);
   read_study_section(root, study);
   study.sources = read_sources_file(root, sources);
   read_cell(root);  // the file's own values first, with their own lines
@@ -289,7 +306,8 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   }
   for (const StudyCell& cell : study.cells) {
     if (cell.visibility == VisibilityMethod::exact || cell.experiment.sources.moved == 0) continue;
-    throw Error(place(), "sources.moved moves what the view sets of the world name",
+    throw Error(place_of(study, "world.visibility"),
+                "sources.moved moves what the view sets of the world name",
                 "set world.visibility = \"exact\", or moved = 0");
   }
   return study;
@@ -307,6 +325,12 @@ std::vector<std::string> named_by_cells(const StudyFile& study,
 }
 
 }  // namespace
+
+std::string place_of(const StudyFile& study, const std::string& key) {
+  auto line = study.lines.find(key);
+  if (line == study.lines.end()) line = study.lines.find(key.substr(0, key.find('.')));
+  return line == study.lines.end() ? study.place : fmt::format("{}:{}", study.place, line->second);
+}
 
 std::vector<std::string> worlds_of(const StudyFile& study) {
   return named_by_cells(study, [](const StudyCell& cell) { return cell.world; });

@@ -45,7 +45,12 @@ struct StudyFile {
   std::vector<std::string> sweep_keys;   ///< the first varies slowest
   std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list per key
   std::vector<StudyCell> cells;                        ///< all combinations
+  std::string place;                                   ///< the file's name, for messages
+  std::map<std::string, int> lines;  ///< of tables and dotted keys; of a swept key, its sweep's
 };
+
+/// Where a dotted key of [section] is set: file and line, of the section if it is not set there.
+std::string place_of(const StudyFile& study, const std::string& key);
 
 /// Reads a study. Everything but [study] has a default. Throws Error with file, line and key for
 /// malformed TOML, an unknown key (suggesting the nearest one), a value of the wrong type or out of

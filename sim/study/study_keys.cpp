@@ -71,7 +71,7 @@ std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
 /// of.
 std::map<std::string, std::string> histogram_settings(const ExperimentSettings& s) {
   const LocaliserOptions usual;
-  const bool of_image = s.method.starts_with("pgh_baseline");
+  const bool of_image = uses_image_histograms(s.method);
   const PghOptions& own = of_image ? s.localiser.image_histograms : s.localiser.histograms;
   const PghOptions& other = of_image ? usual.image_histograms : usual.histograms;
   std::map<std::string, std::string> changed;
@@ -190,7 +190,9 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   }
   if (!cell.told.observations.empty()) key["corners"] = study.corners_fingerprint;
   const std::set<std::string> left_out = newer_at_default(cell.experiment.sources);
-  for (const auto& [name, value] : cell.settings) {
+  std::map<std::string, std::string> settings = cell.settings;
+  settings.merge(settings_of(cell.told));  // also those that are not shown, as all stores have them
+  for (const auto& [name, value] : settings) {
     if (name == "localiser.knows_endpoint_sigma" || left_out.contains(name)) continue;
     if (!names_a_file(name)) key[name] = value;
   }

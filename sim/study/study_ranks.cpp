@@ -25,6 +25,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/study/communicator.h"
+#include "sim/study/grace.h"
 #include "sim/study/host_name.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/rank_messages.h"
@@ -55,20 +56,6 @@ class Patience {
  private:
   static constexpr microseconds shortest{20}, longest{1000};
   microseconds wait_ = shortest;
-};
-
-/// Once asked to stop, running units have so long: mpirun kills its processes a second after it
-/// asks them to end.
-class Grace {
- public:
-  bool is_over(bool stop_requested) {
-    const auto now = std::chrono::steady_clock::now();
-    if (stop_requested && !end_) end_ = now + std::chrono::milliseconds(300);
-    return end_ && now >= *end_;
-  }
-
- private:
-  std::optional<std::chrono::steady_clock::time_point> end_;
 };
 
 Message wait_for_message(Communicator& ranks) {

@@ -51,7 +51,9 @@ StudyResults without_trials(const Study& study,
     }
     result.interval_width = study.file.interval_width;
     result.budget = decisions[results.cells.size()];
-    results.blocks_total += result.budget.wanted;
+    if (work.same_as[results.cells.size()] == static_cast<int>(results.cells.size())) {
+      results.blocks_total += result.budget.wanted;
+    }
     results.cells.push_back(std::move(result));
   }
   return results;
@@ -79,30 +81,27 @@ StudyResults visit_results(const Study& study,
   stored.require_all_read();
   const StudyWork work = study_work(study);
   StudyResults results = without_trials(study, work, stored);
-  constexpr std::size_t at_a_time = 200;  // blocks read together
-  for (std::size_t from = 0; from < work.blocks.size();) {
-    const BlockJob& first = work.blocks[from];
-    std::size_t end = from;
-    while (end < work.blocks.size() && end < from + at_a_time &&
-           work.blocks[end].cell == first.cell) {
-      ++end;
+  const std::size_t cells = results.cells.size();
+  std::vector<std::vector<BlockJob>> jobs(cells);
+  for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
+  constexpr int at_a_time = 200;  // blocks read together
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const auto source = static_cast<std::size_t>(work.same_as[cell]);
+    const int wanted = results.cells[cell].budget.wanted;  // fewer: a cell that has stopped
+    for (int from = 0; from < wanted; from += at_a_time) {
+      const int end = std::min(from + at_a_time, wanted);
+      for (StoredBlock& block : stored.read({work.cell_keys[cell], from, end})) {
+        const BlockJob& job = jobs[source][static_cast<std::size_t>(block.block)];
+        if (static_cast<int>(block.trials.size()) < job.count) continue;
+        std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
+        if (source == cell) ++results.blocks_done;
+        const auto successes = std::count_if(trials.begin(), trials.end(),
+                                             [](const TrialResult& t) { return t.success(); });
+        results.cells[cell].maps.push_back(
+            {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())});
+        visit(cell, std::move(trials));
+      }
     }
-    const std::size_t cell = static_cast<std::size_t>(first.cell);
-    std::vector<StoredBlock> blocks =
-        stored.read({work.cell_keys[cell], first.block, work.blocks[end - 1].block + 1});
-    for (StoredBlock& block : blocks) {
-      const BlockJob& job = work.blocks[from + static_cast<std::size_t>(block.block - first.block)];
-      if (static_cast<int>(block.trials.size()) < job.count) continue;
-      if (job.block >= results.cells[cell].budget.wanted) continue;  // a cell that has stopped
-      std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
-      ++results.blocks_done;
-      const auto successes = std::count_if(trials.begin(), trials.end(),
-                                           [](const TrialResult& t) { return t.success(); });
-      results.cells[cell].maps.push_back(
-          {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())});
-      visit(cell, std::move(trials));
-    }
-    from = end;
   }
   return results;
 }

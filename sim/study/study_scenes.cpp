@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "calib/base/error_place.h"
@@ -29,6 +31,18 @@ namespace {
 
 std::string visibility_key(const StudyCell& cell) {
   return fmt::format("{} {}", static_cast<int>(cell.visibility), cell.world);
+}
+
+/// Errors about a key of [calibration] name its line.
+template <class Work>
+auto naming_lines(const StudyFile& file, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string key = error.place().substr(0, error.place().find(' '));
+    if (!key.starts_with("calibration.")) throw;
+    throw error_of(place_of(file, key), error);
+  }
 }
 
 }  // namespace
@@ -81,17 +95,27 @@ std::shared_ptr<const FreshCalibrations> StudyScenes::calibrations(const StudyCe
   if (!cell.told.calibration) return nullptr;
   const std::string key = calibration_key(study_, cell);
   const std::lock_guard lock(mutex_);
-  auto& made = calibrations_[key];
-  if (!made) {
-    made = std::make_shared<const FreshCalibrations>(study_.rig.rig, *cell.told.calibration,
-                                                     cell.experiment.seed, study_.corners);
+  if (const auto found = calibrations_.find(key); found != calibrations_.end()) {
+    return found->second;
   }
-  return made;
+  const auto made = naming_lines(study_.file, [&] {
+    return std::make_shared<const FreshCalibrations>(study_.rig.rig, *cell.told.calibration,
+                                                     cell.experiment.seed, study_.corners);
+  });
+  constexpr std::size_t most_kept = 30;  // those in use stay with the blocks that use them
+  calibration_keys_.push_back(key);
+  if (calibration_keys_.size() > most_kept) {
+    calibrations_.erase(calibration_keys_.front());
+    calibration_keys_.pop_front();
+  }
+  return calibrations_.emplace(key, made).first->second;
 }
 
 std::shared_ptr<const ToldRigs> StudyScenes::told(const StudyCell& cell) {
   const double psi_c = cell.experiment.sources.calibration;
-  if (cell.told.calibration) return calibrated_rigs(calibrations(cell), psi_c);
+  if (cell.told.calibration) {
+    return naming_lines(study_.file, [&] { return calibrated_rigs(calibrations(cell), psi_c); });
+  }
   if (cell.told.truth.empty()) return nullptr;
   const std::string& file = cell.told.file;
   const RigEstimate& told = study_.told_rigs.at(file).estimate;
@@ -99,6 +123,7 @@ std::shared_ptr<const ToldRigs> StudyScenes::told(const StudyCell& cell) {
     return given_rig(study_.rig.rig, told.rig, psi_c, file);
   }
   check_same_cameras(study_.rig.rig, told.rig, file);
+  if (psi_c == 0) return given_rig(study_.rig.rig, told.rig, 0, file);  // needs no covariance
   return drawn_rigs(study_.rig.rig, required_covariance(told, file), psi_c, cell.experiment.seed,
                     file);
 }

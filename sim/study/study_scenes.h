@@ -40,7 +40,7 @@ class StudyScenes {
   /// Null for a rig that is its own truth. Throws Error if truth and told rig do not fit.
   std::shared_ptr<const ToldRigs> told(const StudyCell& cell);
 
-  /// Null for a cell without [calibration].
+  /// Null for a cell without [calibration]. Of many that differ only the latest are kept.
   std::shared_ptr<const FreshCalibrations> calibrations(const StudyCell& cell);
 
  private:
@@ -50,6 +50,7 @@ class StudyScenes {
   std::map<std::string, QueryWorld> worlds_;
   std::deque<std::string> changed_keys_;  // oldest first
   std::map<std::string, std::shared_ptr<const FreshCalibrations>> calibrations_;
+  std::deque<std::string> calibration_keys_;  // the same
 };
 
 }  // namespace vernier::sim::internal

@@ -29,13 +29,16 @@ StudyWork study_work(const Study& study) {
   StudyWork work;
   std::map<std::string, const StudyCell*> ceilings;
   const int trials = study.file.trials, size = study.file.trials_per_block;
+  std::map<std::string, int> first_with;
   for (const StudyCell& cell : study.file.cells) {
     const int number = static_cast<int>(work.cell_keys.size());
     work.cell_keys.push_back(cell_key(study, cell));
+    work.same_as.push_back(first_with.emplace(work.cell_keys.back(), number).first->second);
+    ceilings.emplace(ceiling_key(study, cell), &cell);
+    if (work.same_as.back() != number) continue;
     for (int first = 0, block = 0; first < trials; first += size, ++block) {
       work.blocks.push_back({number, block, first, std::min(size, trials - first)});
     }
-    ceilings.emplace(ceiling_key(study, cell), &cell);
   }
   for (const auto& [key, cell] : ceilings) {
     work.ceilings.push_back({key, cell, ceiling_queries(study, key)});
@@ -74,7 +77,8 @@ std::vector<BudgetDecision> budget_decisions(const Study& study,
     if (count.trials >= job.count) first[cell].push_back(count);
   }
   std::vector<BudgetDecision> decisions;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
+  for (std::size_t i = 0; i < cells; ++i) {
+    const auto cell = static_cast<std::size_t>(work.same_as[i]);
     decisions.push_back(budget_decision(first[cell], all[cell], study.file.interval_width));
   }
   return decisions;
@@ -107,9 +111,14 @@ MissingWork missing_blocks(const StudyWork& work,
                            const StoredResults& stored) {
   MissingWork missing;
   missing.queries.resize(work.ceilings.size());
+  std::vector<int> wanted(first_blocks.size(), 0);  // of cells that do not differ, the most
+  for (std::size_t i = 0; i < first_blocks.size(); ++i) {
+    int& most = wanted[static_cast<std::size_t>(work.same_as[i])];
+    most = std::max(most, first_blocks[i]);
+  }
   for (std::size_t i = 0; i < work.blocks.size(); ++i) {
     const BlockJob& job = work.blocks[i];
-    if (job.block >= first_blocks[static_cast<std::size_t>(job.cell)]) continue;
+    if (job.block >= wanted[static_cast<std::size_t>(job.cell)]) continue;
     if (stored.trials(work.cell_keys[static_cast<std::size_t>(job.cell)], job.block) < job.count) {
       missing.blocks.push_back(static_cast<int>(i));
     }

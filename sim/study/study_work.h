@@ -30,6 +30,8 @@ struct CeilingJob {
 /// ceiling, the queries whose place is s modulo n.
 struct StudyWork {
   std::vector<std::string> cell_keys;
+  /// The first cell with the same key, often itself: cells that do not differ share its blocks.
+  std::vector<int> same_as;
   std::vector<BlockJob> blocks;
   std::vector<CeilingJob> ceilings;  ///< ascending by key
 };

@@ -189,6 +189,15 @@ std::map<std::string, std::string> settings_of(const ToldSettings& told) {
   return all;
 }
 
+std::map<std::string, std::string> shown_settings_of(const ToldSettings& told) {
+  std::map<std::string, std::string> all = settings_of(told);
+  if (told.observations.ends_with(".json")) {
+    all.erase("calibration.board");
+    all.erase("calibration.square_m");
+  }
+  return all;
+}
+
 bool names_a_file(const std::string& key) {
   return key == "world.file" || key == "rig.truth" || key == "rig.file" ||
          key == "calibration.observations";

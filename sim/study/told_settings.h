@@ -48,6 +48,9 @@ class ToldReader : public vernier::internal::TomlReader {
 /// The settings by dotted key: none for a study without rig.truth and [calibration].
 std::map<std::string, std::string> settings_of(const ToldSettings& told);
 
+/// The same without the board of simulated views where the corners of a rig file have their own.
+std::map<std::string, std::string> shown_settings_of(const ToldSettings& told);
+
 /// Keys of settings that are names of files, whose content counts instead.
 bool names_a_file(const std::string& key);
 

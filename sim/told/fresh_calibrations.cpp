@@ -31,23 +31,6 @@ using namespace vernier::internal;
 
 namespace {
 
-/// Corners that noise carried out of their image, which no detector reports, and views of too few.
-void leave_out_unseen(const Rig& rig, BoardObservations& seen) {
-  for (BoardView& view : seen.views) {
-    const Camera& camera = rig.cameras[static_cast<std::size_t>(view.camera)];
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      if (!in_image(camera, view.pixels_px[i])) continue;
-      view.ids[kept] = view.ids[i];
-      view.pixels_px[kept++] = view.pixels_px[i];
-    }
-    view.ids.resize(kept);
-    view.pixels_px.resize(kept);
-  }
-  std::erase_if(seen.views,
-                [&](const BoardView& view) { return !determines_pose(seen.target_m, view.ids); });
-}
-
 class CalibratedRigs : public ToldRigs {
  public:
   CalibratedRigs(std::shared_ptr<const FreshCalibrations> calibrations, double psi_c)
@@ -57,7 +40,7 @@ class CalibratedRigs : public ToldRigs {
     if (psi_c_ == 0) return {calibrations_->truth(), {}};
     const auto calibration = calibrations_->of(draw);
     if (!calibration->failure.empty()) return {{}, calibration->failure};
-    return {with_scaled_error(calibrations_->truth(), calibration->rig, psi_c_), {}};
+    return possible_only(with_scaled_error(calibrations_->truth(), calibration->rig, psi_c_));
   }
 
  private:
@@ -108,8 +91,11 @@ BoardObservations FreshCalibrations::views_of(std::uint32_t draw) const {
                                              .distance_m = options_.distance_m,
                                              .tilt_rad = options_.tilt_rad})
                                  .observations;
-    leave_out_unseen(truth_, seen);
-    return seen;
+    // No detector reports a corner that noise carried out of its image.
+    return with_corners(std::move(seen), [&](const BoardView& view, std::size_t corner) {
+      return in_image(truth_.cameras[static_cast<std::size_t>(view.camera)],
+                      view.pixels_px[corner]);
+    });
   }
   std::vector<int> frames = shuffled(
       frames_of(*corners_), {.seed = seed_,
@@ -142,11 +128,20 @@ std::shared_ptr<const FreshCalibration> FreshCalibrations::of(std::uint32_t draw
     if (const auto found = known_.find(draw); found != known_.end()) return found->second;
   }
   auto computed = std::make_shared<const FreshCalibration>(compute(draw));
-  constexpr std::size_t most_kept = 20'000;
   const std::lock_guard lock(mutex_);
-  // Those of trials, the lower numbers, come in their order; those of maps are few.
-  if (known_.size() >= most_kept) known_.erase(known_.begin());
-  return known_.emplace(draw, std::move(computed)).first->second;
+  const auto [kept, is_new] = known_.emplace(draw, std::move(computed));
+  std::shared_ptr<const FreshCalibration> result = kept->second;
+  if (is_new) latest_.push_back(draw);
+  while (latest_.size() > options_.most_kept) {
+    known_.erase(latest_.front());
+    latest_.pop_front();
+  }
+  return result;
+}
+
+std::size_t FreshCalibrations::kept() const {
+  const std::lock_guard lock(mutex_);
+  return known_.size();
 }
 
 std::shared_ptr<const ToldRigs> calibrated_rigs(
@@ -160,17 +155,23 @@ std::shared_ptr<const ToldRigs> calibrated_rigs(
 }
 
 CalibrationRecord record_of(const FreshCalibrations& calibrations, int count) {
+  std::vector<std::shared_ptr<const FreshCalibration>> all;
+  for (int draw = 0; draw < count; ++draw) {
+    all.push_back(calibrations.of(static_cast<std::uint32_t>(draw)));
+  }
+  return record_of(calibrations.truth(), all);
+}
+
+CalibrationRecord record_of(
+    const Rig& truth, const std::vector<std::shared_ptr<const FreshCalibration>>& calibrations) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   CalibrationRecord record;
-  record.calibrations = count;
+  record.calibrations = static_cast<int>(calibrations.size());
   const std::optional<PixelPair> pair =
-      calibrations.truth().cameras.size() == 2
-          ? pixel_pair(calibrations.truth(), {0, 0, record.range_m})
-          : std::nullopt;
+      truth.cameras.size() == 2 ? pixel_pair(truth, {0, 0, record.range_m}) : std::nullopt;
   double errors = 0, variances = 0;
   int measured = 0;
-  for (int draw = 0; draw < count; ++draw) {
-    const auto c = calibrations.of(static_cast<std::uint32_t>(draw));
+  for (const auto& c : calibrations) {
     if (!c->failure.empty()) {
       if (record.failed++ == 0) record.why_failed = c->failure;
       continue;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -27,6 +29,8 @@ struct FreshCalibrationOptions {
   double pixel_sigma_px = 0.2;  ///< white noise on each coordinate of a simulated corner
   double distance_m = 1.0;      ///< of a simulated board, varied by a third either way
   double tilt_rad = 0.6;        ///< of a simulated board, largest about x and y
+  /// The latest so many calibrations are kept, of 3 kB each; those dropped are computed again.
+  std::size_t most_kept = 5000;
 };
 
 /// One calibration. With a failure there is nothing else; a doubtful one is used all the same.
@@ -43,7 +47,7 @@ struct FreshCalibration {
 /// Simulated: poses and noise of the views are drawn by (seed, draw, frame), so those of n views
 /// are the first n of more. Real: calibration `draw` takes the first `views` of all frames in an
 /// order that is drawn by (seed, draw), so they are nested likewise. Each is computed once and
-/// kept, the last 20,000 at most. Corners of simulated views that noise carries out of their image
+/// kept, the latest `most_kept`. Corners of simulated views that noise carries out of their image
 /// are left out.
 class FreshCalibrations {
  public:
@@ -58,6 +62,8 @@ class FreshCalibrations {
   std::shared_ptr<const FreshCalibration> of(std::uint32_t draw) const;
   const Rig& truth() const { return truth_; }
   const FreshCalibrationOptions& options() const { return options_; }
+  /// How many calibrations are kept.
+  std::size_t kept() const;
 
   /// The views that a calibration takes.
   BoardObservations views_of(std::uint32_t draw) const;
@@ -71,6 +77,7 @@ class FreshCalibrations {
   std::shared_ptr<const BoardObservations> corners_;  // null: simulated
   mutable std::mutex mutex_;
   mutable std::map<std::uint32_t, std::shared_ptr<const FreshCalibration>> known_;
+  mutable std::deque<std::uint32_t> latest_;  // numbers of known_, oldest first
 };
 
 /// Each draw is told a calibration of its own. Throws Error if psi_c scales a difference of lens
@@ -90,7 +97,10 @@ struct CalibrationRecord {
   double depth_error_m = 0, depth_sd_m = 0;
 };
 
-/// Of the calibrations of draws 0 to count - 1.
+/// Of these calibrations of one true rig; reasons are those of the first in order.
+CalibrationRecord record_of(
+    const Rig& truth, const std::vector<std::shared_ptr<const FreshCalibration>>& calibrations);
+/// The same of draws 0 to count - 1.
 CalibrationRecord record_of(const FreshCalibrations& calibrations, int count);
 
 }  // namespace vernier::sim::internal

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "calib/rig.h"
+#include "sim/told_rigs.h"
 
 namespace vernier::sim::internal {
 
@@ -19,5 +20,8 @@ void check_scale(const Rig& truth, const Rig& rig, double psi_c, const std::stri
 
 /// truth ⊕ ψ_c (rig ⊖ truth), to the bit `truth` at 0 and `rig` at 1.
 Rig with_scaled_error(const Rig& truth, const Rig& rig, double psi_c);
+
+/// The rig, or a failure that says why no rig can be like it (possible_rig.h).
+ToldRig possible_only(Rig rig);
 
 }  // namespace vernier::sim::internal

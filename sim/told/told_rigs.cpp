@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "sim/told/possible_rig.h"
 #include "sim/told/scaled_error.h"
 
 namespace vernier::sim {
@@ -28,7 +30,12 @@ class DrawnRigs : public ToldRigs {
       : sampler_(std::move(sampler)), psi_c_(psi_c), seed_(seed) {}
 
   ToldRig told(std::uint32_t draw) const override {
-    return {psi_c_ == 0 ? sampler_.mean() : sampler_.sample(psi_c_, seed_, draw), {}};
+    if (psi_c_ == 0) return {sampler_.mean(), {}};
+    try {
+      return possible_only(sampler_.sample(psi_c_, seed_, draw));
+    } catch (const Error& error) {  // the draw overflows
+      return {{}, error.place() + ": " + error.fault()};
+    }
   }
 
  private:
@@ -39,11 +46,11 @@ class DrawnRigs : public ToldRigs {
 
 class GivenRig : public ToldRigs {
  public:
-  explicit GivenRig(Rig rig) : rig_(std::move(rig)) {}
-  ToldRig told(std::uint32_t) const override { return {rig_, {}}; }
+  explicit GivenRig(ToldRig rig) : rig_(std::move(rig)) {}
+  ToldRig told(std::uint32_t) const override { return rig_; }
 
  private:
-  Rig rig_;
+  ToldRig rig_;
 };
 
 }  // namespace
@@ -90,6 +97,13 @@ Rig with_scaled_error(const Rig& truth, const Rig& rig, double psi_c) {
   return retract(truth, psi_c * difference(rig, truth));
 }
 
+ToldRig possible_only(Rig rig) {
+  if (std::string why = impossible(rig); !why.empty()) {
+    return {{}, "no cameras can be like the rig that is told: " + why};
+  }
+  return {std::move(rig), {}};
+}
+
 }  // namespace internal
 
 std::shared_ptr<const ToldRigs> drawn_rigs(const Rig& truth,
@@ -117,7 +131,8 @@ std::shared_ptr<const ToldRigs> given_rig(const Rig& truth,
                                           const std::string& place) {
   check_same_cameras(truth, rig, place);
   check_scale(truth, rig, psi_c, place);
-  return std::make_shared<const GivenRig>(with_scaled_error(truth, rig, psi_c));
+  if (psi_c == 0) return std::make_shared<const GivenRig>(ToldRig{truth, {}});
+  return std::make_shared<const GivenRig>(possible_only(with_scaled_error(truth, rig, psi_c)));
 }
 
 }  // namespace vernier::sim

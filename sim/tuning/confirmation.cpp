@@ -16,6 +16,7 @@
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
 #include "sim/tuning/objective.h"
+#include "sim/tuning/paired_scores.h"
 
 namespace vernier::sim::internal {
 
@@ -23,32 +24,21 @@ using namespace vernier::internal;
 
 namespace {
 
-/// Differences of the scores of the trials of one map.
-struct MapScores {
-  double difference = 0, trials = 0;
-};
-
-struct Differences {
-  std::vector<MapScores> maps;
-  double sum = 0, squares = 0, trials = 0;
-};
-
-/// Of two cells trial by trial; each block of a cell is a map.
-void add_cell(const CellResult& a, const CellResult& b, Objective objective, Differences& all) {
+/// Two cells trial by trial; each block of a cell, a map, is a round.
+void add_cell(const CellResult& a, const CellResult& b, Objective objective, PairedScores& all) {
+  struct MapScores {
+    std::vector<double> a, b;
+  };
   std::map<std::uint32_t, MapScores> maps;
   for (std::size_t i = 0; i < a.trials.size(); ++i) {
-    const double d = score(objective, a.trials[i]) - score(objective, b.trials[i]);
     MapScores& map = maps[a.trials[i].trial / static_cast<std::uint32_t>(a.trials_per_block)];
-    map.difference += d;
-    map.trials += 1;
-    all.sum += d;
-    all.squares += d * d;
-    all.trials += 1;
+    map.a.push_back(score(objective, a.trials[i]));
+    map.b.push_back(score(objective, b.trials[i]));
   }
-  for (const auto& [block, map] : maps) all.maps.push_back(map);
+  for (const auto& [block, map] : maps) all.add_round(map.a, map.b);
 }
 
-Differences differences(const StudyResults& a, const StudyResults& b, Objective objective) {
+PairedScores paired(const StudyResults& a, const StudyResults& b, Objective objective) {
   const auto same = [](const CellResult& x, const CellResult& y) {
     return x.trials.size() == y.trials.size() && x.trials_per_block == y.trials_per_block;
   };
@@ -57,7 +47,7 @@ Differences differences(const StudyResults& a, const StudyResults& b, Objective 
     throw Error("confirmation", "the candidates have not the same trials",
                 "confirm both on the same worlds, seed and number of trials");
   }
-  Differences all;
+  PairedScores all;
   for (std::size_t i = 0; i < a.cells.size(); ++i) {
     add_cell(a.cells[i], b.cells[i], objective, all);
   }
@@ -107,21 +97,14 @@ CandidateFigures figures_of(const StudyResults& results,
 ConfirmedDifference confirmed_difference(const StudyResults& a,
                                          const StudyResults& b,
                                          Objective objective) {
-  const Differences all = differences(a, b, objective);
+  const PairedScores all = paired(a, b, objective);
   ConfirmedDifference result;
-  if (all.trials == 0) return result;
-  result.difference = all.sum / all.trials;
-  const double maps = static_cast<double>(all.maps.size());
-  if (all.maps.size() < static_cast<std::size_t>(fewest_maps)) return result;
-  double between = 0;
-  for (const MapScores& map : all.maps) {
-    const double off = map.difference - map.trials * result.difference;
-    between += off * off;
-  }
-  const double sd = std::sqrt(std::max(2 + all.squares, maps / (maps - 1) * between)) / all.trials;
-  const double t = student_quantile(0.975, maps - 1);
+  result.difference = all.difference();
+  if (all.rounds() < fewest_maps) return result;
+  const double dof = all.rounds() - 1, sd = all.sd();
+  const double t = student_quantile(0.975, dof);
   result.interval_95 = {result.difference - t * sd, result.difference + t * sd};
-  result.p_value = 2 * student_survival(std::abs(result.difference) / sd, maps - 1);
+  result.p_value = 2 * student_survival(std::abs(result.difference) / sd, dof);
   return result;
 }
 

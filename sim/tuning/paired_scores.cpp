@@ -55,6 +55,8 @@ PairedScores::Variances PairedScores::variances() const {
   return v;
 }
 
+double PairedScores::sd() const { return trials_ > 0 ? std::sqrt(variance()) / trials_ : 0; }
+
 double PairedScores::limit(double alpha, double variance, int dof) const {
   if (!(alpha > 0 && alpha < 0.5)) {
     throw Error("paired scores", fmt::format("an error rate of {}", alpha), "use one in (0, 0.5)");
@@ -65,7 +67,7 @@ double PairedScores::limit(double alpha, double variance, int dof) const {
 }
 
 double PairedScores::upper_limit(double alpha) const {
-  return limit(alpha, std::max(2 + squares_, variances().between), rounds() - 1);
+  return limit(alpha, variance(), rounds() - 1);
 }
 
 double PairedScores::upper_limit(double alpha, double design_effect, int dof) const {

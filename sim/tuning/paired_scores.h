@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,8 @@ class PairedScores {
   int rounds() const { return static_cast<int>(rounds_.size()); }
   /// Mean difference; 0 without trials.
   double difference() const { return trials_ > 0 ? sum_ / trials_ : 0; }
+  /// √V / Σ n_k: its standard deviation. 0 without trials.
+  double sd() const;
   /// In [-1, 1]; 1 for fewer than two rounds. Throws Error for an α outside (0, 1/2).
   double upper_limit(double alpha) const;
   /// The same for any number of rounds where other pairs show how rounds vary: with
@@ -53,6 +56,7 @@ class PairedScores {
   struct Round {
     double difference, trials;
   };
+  double variance() const { return std::max(2 + squares_, variances().between); }
   double limit(double alpha, double variance, int dof) const;
 
   std::vector<Round> rounds_;

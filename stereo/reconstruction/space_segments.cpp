@@ -47,11 +47,7 @@ MeasuredSegment placed(const SegmentDisparity& s,
     J.block<3, 1>(3 * end, 4 + end) = -p / d;
     (end == 0 ? result.segment.a_m : result.segment.b_m) = p;
   }
-  result.independent_m2 = J * s.covariance_px2 * J.transpose();
-  const double a_z = result.segment.a_m.z(), b_z = result.segment.b_m.z();
-  const int farther = a_z > b_z ? 2 : 5;
-  result.segment.depth_sigma_m = std::sqrt(result.independent_m2(farther, farther));
-  result.segment.reliable = std::max(a_z, b_z) < options.max_depth_m;
+  state_independent_error(result, J, s.covariance_px2, options);
   return result;
 }
 
@@ -66,20 +62,31 @@ std::optional<StereoSegment> raw_segment(const SegmentDisparity& s,
   return StereoSegment{{*la, *lb}, {*ra, *rb}, 0};
 }
 
-void judge(MeasuredSegment& s, const SpaceSegmentOptions& options) {
-  const Matrix6d C = s.covariance_m2();
-  s.relative_sigma =
-      std::max(std::sqrt(C(2, 2)) / s.segment.a_m.z(), std::sqrt(C(5, 5)) / s.segment.b_m.z());
-  s.linear = s.relative_sigma <= options.max_relative;
-}
+}  // namespace
 
-SegmentStatus status_of(const SegmentDisparity& s) {
+SegmentStatus status_in_space(const SegmentDisparity& s) {
   if (s.status != SegmentStatus::placed) return s.status;
   const bool in_front = s.a_disparity_px > 0 && s.b_disparity_px > 0;
   return in_front ? SegmentStatus::placed : SegmentStatus::behind;
 }
 
-}  // namespace
+void state_independent_error(MeasuredSegment& s,
+                             const Matrix6d& J,
+                             const Matrix6d& C_px2,
+                             const SpaceSegmentOptions& options) {
+  s.independent_m2 = J * C_px2 * J.transpose();
+  const double a_z = s.segment.a_m.z(), b_z = s.segment.b_m.z();
+  const int farther = a_z > b_z ? 2 : 5;
+  s.segment.depth_sigma_m = std::sqrt(s.independent_m2(farther, farther));
+  s.segment.reliable = std::max(a_z, b_z) < options.max_depth_m;
+}
+
+void judge_linearity(MeasuredSegment& s, const SpaceSegmentOptions& options) {
+  const Matrix6d C = s.covariance_m2();
+  s.relative_sigma =
+      std::max(std::sqrt(C(2, 2)) / s.segment.a_m.z(), std::sqrt(C(5, 5)) / s.segment.b_m.z());
+  s.linear = s.relative_sigma <= options.max_relative;
+}
 
 std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> segments,
                                             const RectifiedGeometry& geometry,
@@ -87,10 +94,10 @@ std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> se
   check(options);
   std::vector<MeasuredSegment> all(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    all[i].status = status_of(segments[i]);
+    all[i].status = status_in_space(segments[i]);
     if (all[i].status != SegmentStatus::placed) continue;
     all[i] = placed(segments[i], geometry, options);
-    judge(all[i], options);
+    judge_linearity(all[i], options);
   }
   return all;
 }
@@ -108,7 +115,7 @@ std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> se
   const RawPixels left(rig, geometry, 0), right(rig, geometry, 1);
   std::vector<MeasuredSegment> all(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    all[i].status = status_of(segments[i]);
+    all[i].status = status_in_space(segments[i]);
     if (all[i].status != SegmentStatus::placed) continue;
     const auto raw = raw_segment(segments[i], left, right);
     auto triangulated = raw ? triangulate_with_jacobian(rig, *raw) : std::nullopt;
@@ -122,7 +129,7 @@ std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> se
       all[i].calibration_m2 =
           all[i].by_rig * estimate.covariance->matrix * all[i].by_rig.transpose();
     }
-    judge(all[i], options);
+    judge_linearity(all[i], options);
   }
   return all;
 }

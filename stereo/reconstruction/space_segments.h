@@ -39,6 +39,19 @@ struct MeasuredSegment {
   Eigen::Matrix<double, 6, 6> covariance_m2() const { return independent_m2 + calibration_m2; }
 };
 
+/// `placed`, or why a segment has no place in space: rejected, or an end that is behind the rig.
+SegmentStatus status_in_space(const SegmentDisparity& segment);
+
+/// States the independent error of a segment whose ends are set, by their derivatives J with
+/// respect to what C is the covariance of (stereo/reconstruction/segment_disparity.h).
+void state_independent_error(MeasuredSegment& segment,
+                             const Eigen::Matrix<double, 6, 6>& J,
+                             const Eigen::Matrix<double, 6, 6>& C_px2,
+                             const SpaceSegmentOptions& options);
+
+/// Sets relative_sigma and linear by both covariances.
+void judge_linearity(MeasuredSegment& segment, const SpaceSegmentOptions& options);
+
 /// Reconstructs segments, one result per input; rejected ones stay rejected, and an end may turn
 /// out to be `behind` the rig. In the rectified left camera frame an end is
 ///

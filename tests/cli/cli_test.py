@@ -124,6 +124,33 @@ class RealPairs(Case):
         self.assertLessEqual(radial['rms_px'], 0.20)
         self.assertLessEqual(json.loads(self.calibrate('--model', 'opencv5').stdout)['rms_px'], 0.16)
 
+    def test_board_shape_and_motion(self):
+        usual = json.loads(self.calibrate('--no-model-check').stdout)
+        done = self.calibrate('--no-model-check', '--board-shape', '--motion')
+        self.assertIn('the rig file holds no corners', done.stderr)
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertNotIn('evidence', rig)
+        effects = rig['calibration']['effects']
+        self.assertEqual(len(effects['shape_m']), 3 * 54)
+        self.assertGreater(effects['shape_height_m'], 2e-5)
+        self.assertLess(effects['shape_height_m'], 5e-4)
+        for key in ('pixel_sigma_px', 'rms_px', 'chi2', 'dof'):
+            self.assertEqual(rig['calibration'][key], usual['calibration'][key]
+                             if 'calibration' in usual else usual[key])
+        self.works('sample', self.folder / 'rig.json', '-n', '2', '-o', self.folder / 's.csv')
+        self.assertIn('the board is uneven', self.works(
+            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
+            '--board', '9x6', '--square-m', '0.025', '--no-model-check', '--board-shape', '-o',
+            self.folder / 'shape.json').stdout)
+        for option, of in ((('--warp',), '--warp: is not estimated beside --board-shape or '
+                            '--motion; give --board-shape alone, which contains it'),
+                           (('--pixel-sigma', '0.2'), '--pixel-sigma: is one of the components '
+                            'that --board-shape and --motion estimate; leave it out')):
+            self.complains('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                           IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
+                           '-o', self.folder / 'no.json', '--motion', *option, of=of)
+            self.assertFalse((self.folder / 'no.json').exists())
+
     def test_detect_then_calibrate_is_the_same(self):
         direct = json.loads(self.calibrate().stdout)
         self.works('detect', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
@@ -1166,7 +1193,9 @@ class Study(Case):
         file = self.folder / 's.toml'
         file.write_text('[study]\ntrials = 18\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
                         '[sweep]\n"sources.calibration" = [0.1, 30, 100, 1000]\n')
-        done = self.works('study', file, '-o', self.folder / 'out', '--json', '-q')
+        done = vernier('study', file, '-o', self.folder / 'out', '--json', '-q')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('told a rig that no cameras can have (psi_c = 1000)', done.stderr)
         found = json.loads(done.stdout)['comparisons']
         self.assertEqual(len(found), 3)
         least = 0

@@ -53,6 +53,12 @@ sys.stdin.readline()
 print('{"speed_mps": 7, "turn_radps": 0, "duration_s": 0.2}', flush=True)
 sys.stdin.read()
 ''',
+    'unready': '''
+import sys
+open('starts', 'a').write('.')
+sys.stdin.readline()
+sys.exit('no licence')
+''',
 }
 
 
@@ -127,6 +133,9 @@ class Drive(verb_calls.ProgramCase):
                              input=(self.folder / 'log.jsonl').read_text(), capture_output=True,
                              text=True, cwd=self.folder, timeout=60)
         self.assertEqual(json.loads(run.stdout)['end'], end, run.stderr)
+        blanks = 'speed_mps, turn_radps , duration_s\n' + rows.replace(',', ' ,\t')
+        (self.folder / 'blanks.csv').write_text(blanks)
+        self.assertEqual(self.done('--commands', 'blanks.csv')['end'], end)
         (self.folder / 'wheels.csv').write_text('left_mps,right_mps,duration_s\n0.2,0.4,1\n')
         (self.folder / 'same.jsonl').write_text(
             '{"speed_mps": 0.30000000000000004, "turn_radps": 0.5, "duration_s": 1}\n')
@@ -148,7 +157,8 @@ class Drive(verb_calls.ProgramCase):
     def test_a_program_that_fails_ends_the_drive_and_says_why(self):
         for name, steps, why in (('dies', 2, 'out of ideas'),
                                  ('hangs', 0, 'gives no answer within 0.5 s'),
-                                 ('raves', 0, 'a wheel would run at 7 m/s')):
+                                 ('raves', 0, 'a wheel would run at 7 m/s'),
+                                 ('unready', 0, 'no licence')):
             run = self.run_program(*START, '--command', f'python3 {name}.py', '--time-limit-s', 0.5,
                                    '-o', f'{name}.jsonl', '--json')
             self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
@@ -157,6 +167,7 @@ class Drive(verb_calls.ProgramCase):
             self.assertEqual((told['ended'], told['steps']), ('failed', steps))
             self.assertIn(why, told['failure'])
             self.assertEqual(len(self.observations(f'{name}.jsonl')), steps + 1)
+        self.assertEqual((self.folder / 'starts').read_text(), '.', 'started once')
         self.assertIn('cannot be started', self.refused('--command', './no_such_program'))
 
     def test_steps_end_a_drive(self):

@@ -64,18 +64,6 @@ class Lines(verb_calls.ProgramCase):
         super().setUp()
         write_walk(self.folder)
 
-    def done(self, *words):
-        run = self.run_program(*words)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return run.stdout
-
-    def refused(self, *words, says):
-        run = self.run_program(*words)
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
-        self.assertIn(says, run.stderr)
-        self.assertFalse((self.folder / 'out.jsonl').exists())
-
     def test_lines_stand_where_the_boxes_do(self):
         self.done(*CALL, '--poses', 'poses.csv', '--height-m', '1', '-o', 'out.jsonl', '--segments',
                   'segments.jsonl')

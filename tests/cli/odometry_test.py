@@ -53,17 +53,6 @@ def image(grey, at_x_m):
 class Odometry(verb_calls.ProgramCase):
     program = PROGRAM
 
-    def done(self, *words):
-        run = self.run_program(*words)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return run.stdout
-
-    def refused(self, *words, says):
-        run = self.run_program(*words)
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
-        self.assertIn(says, run.stderr)
-
     def test_images_of_a_rig_that_moves_sideways(self):
         (self.folder / 'wall.json').write_text(json.dumps(rig()))
         grey = wall()

@@ -88,6 +88,12 @@ class Render(verb_calls.ProgramCase):
                 known += 1
         self.assertGreater(known, 480)
 
+    def test_an_image_of_little_but_white_is_doubted(self):
+        run = self.run_program('render', *POSE, '--exposure', '1e6', '-o', 'white', '--json')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('lower --exposure', run.stderr)
+        self.assertGreater(json.loads(run.stdout)['poses'][0]['saturated'], 0.9)
+
     def test_edges_lie_on_the_surfaces_of_the_truth(self):
         self.done('render', *POSE, '-o', 'one')
         disparities = floats(self.folder / 'one/rectified/disparity.pfm')[2]

@@ -260,3 +260,18 @@ class ProgramCase(unittest.TestCase):
     def run_program(self, *words):
         return subprocess.run([self.program, *self.first_words, *map(str, words)],
                               capture_output=True, text=True, cwd=self.folder, timeout=120)
+
+    def done(self, *words, code=0):
+        """What the program prints at this exit code."""
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, code, run.stderr)
+        return run.stdout
+
+    def refused(self, *words, says):
+        """Bad input: one line that says so, and nothing written."""
+        before = sorted(self.folder.rglob('*'))
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+        self.assertIn(says, run.stderr)
+        self.assertEqual(sorted(self.folder.rglob('*')), before)

@@ -15,11 +15,13 @@ export function overview_section(studies) {
   const made = section("studies", "All studies", paragraph("Each study has its own queries: only"
     + " cells of one study are compared in pairs."));
   const together = joined(studies);
-  const drawn = together.cells.length <= MOST_ROWS && figure("Success in all studies", "Dots: success rate of a cell; bars: 95 %"
-    + " intervals.", "Success rate with 95 per cent intervals of all cells of all studies; values"
-    + " are in the table below.", () => multiples_height(together),
-  () => multiples_plot(together, success_of(together)));
-  if (drawn) made.append(drawn);
+  if (together.cells.length <= MOST_ROWS) {
+    const drawn = figure("Success in all studies", "Dots: success rate of a cell; bars: 95 %"
+      + " intervals.", "Success rate with 95 per cent intervals of all cells of all studies; values"
+      + " are in the table below.", () => multiples_height(together),
+    () => multiples_plot(together, success_of(together)));
+    if (drawn) made.append(drawn);
+  }
   made.append(table("Cells of all studies", [
     { head: "Study", text: true, cell: ({ study }) => study },
     { head: "Cell", text: true, cell: ({ cell }) => cell.label ?? DASH },

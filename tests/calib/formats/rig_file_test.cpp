@@ -57,6 +57,31 @@ TEST(RigFile, RoundTrip) {
             1e-14);
 }
 
+TEST(RigFile, KeepsRandomEffects) {
+  RigEstimate e = estimate();
+  e.calibration->effects = CalibrationEffects{
+      0.1, 0.05, 0.06, 1e-3, 3e-4, 5e-5, 2e-4, {{0, 1e-4, -2e-4}, {1e-5, 0, 3e-4}}};
+  const std::string text = format_rig(e, KeepEvidence::no);
+  const RigFile file = parse_rig(text, "rig.json");
+  EXPECT_TRUE(file.warnings.empty());
+  const CalibrationEffects& after = *file.estimate.calibration->effects;
+  EXPECT_EQ(after.white_px, 0.1);
+  EXPECT_EQ(after.field_px, 0.05);
+  EXPECT_EQ(after.field_length_m, 0.06);
+  EXPECT_EQ(after.motion_rad, 1e-3);
+  EXPECT_EQ(after.motion_m, 3e-4);
+  EXPECT_EQ(after.shape_plane_m, 5e-5);
+  EXPECT_EQ(after.shape_height_m, 2e-4);
+  EXPECT_TRUE(after.shape_m == e.calibration->effects->shape_m);
+  EXPECT_EQ(complaint_of(replaced(text, "\"motion_m\":", "\"motion\":")),
+            "rig.json: calibration.effects: has no \"motion_m\"; add it");
+  e.calibration->effects->field_px = -1;
+  EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
+            "rig.json: calibration.effects.field_px: is negative; calibrate again");
+  EXPECT_EQ(complaint_of(replaced(text, "\"shape_m\":[", "\"shape_m\":[1,")),
+            "rig.json: calibration.effects.shape_m: is not x, y, z of each point; calibrate again");
+}
+
 TEST(RigFile, UnknownKeysAreKeptWithAWarning) {
   const std::string text = replaced(format_rig(estimate(), KeepEvidence::no), "\"version\":1",
                                     "\"version\":1,\"serial\":\"A-17\"");

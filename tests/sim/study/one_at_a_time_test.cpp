@@ -3,7 +3,10 @@
 #include "sim/study/one_at_a_time.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -12,9 +15,12 @@
 #include "calib/error.h"
 #include "sim/sources.h"
 #include "sim/study/cell_comparison.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_work.h"
 #include "tests/support/error_message.h"
+#include "tests/support/small_office.h"
 
 namespace vernier {
 
@@ -102,6 +108,45 @@ TEST(OneAtATime, StandsInEveryCellOfASweepAndIsComparedWithinIt) {
   EXPECT_EQ(designs, expected);
 }
 
+// Half of 2 is 1 and twice 1 is 2: two cells of six differ from others by name only.
+TEST(OneAtATime, CellsThatDoNotDifferAreComputedOnce) {
+  Study study;
+  study.file = parse_study(
+      "[study]\ntrials = 6\nprotocol = \"near_path\"\n[map]\nspacing_m = 2\n[sweep]\n"
+      "\"sources.calibration\" = [1, 2]\n[one_at_a_time]\ndesigns = [\"swept\"]\n"
+      "sources = [\"calibration\"]\nfactors = [0.5, 2]\n",
+      "s.toml");
+  study.world = test::small_office();
+  study.rig = test::nominal_rig();
+  study.world_fingerprint = "office";
+  study.rig_fingerprint = "nominal";
+  const StudyWork work = study_work(study);
+  EXPECT_EQ(work.same_as, (std::vector<int>{0, 1, 2, 2, 0, 5}));  // 1, 0.5, 2; 2, 1, 4
+  EXPECT_EQ(work.blocks.size(), 4u * 6);
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("vernier_same_" + std::to_string(getpid()));
+  int total = 0, done = 0;
+  StudyRun run{.folder = folder, .threads = 2, .shard = {}, .command = ""};
+  run.progress = [&](int now, int of) {
+    done = now;
+    total = of;
+  };
+  run_study(study, run);
+  EXPECT_EQ(total, 4 * 6);
+  EXPECT_EQ(done, total);
+  const StudyResults results = study_results(study, folder);
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(results.blocks_total, 4 * 6);
+  EXPECT_EQ(results.blocks_done, 4 * 6);
+  ASSERT_EQ(results.cells.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto same = static_cast<std::size_t>(work.same_as[i]);
+    ASSERT_EQ(results.cells[i].trials.size(), 6u);
+    EXPECT_EQ(results.cells[i].maps.size(), 6u);
+    EXPECT_EQ(trials_text(results.cells[i].trials), trials_text(results.cells[same].trials));
+  }
+}
+
 TEST(OneAtATime, RefusesWhatItCannotMake) {
   const auto fault = [](const std::string& table) {
     return test::error_message([&] { cells("[one_at_a_time]\n" + table); });
@@ -117,7 +162,11 @@ TEST(OneAtATime, RefusesWhatItCannotMake) {
   EXPECT_NE(fault("designs = [\"swept\"]\nfactors = [1]\n").find("is no factor"),
             std::string::npos);
   EXPECT_NE(fault("designs = [\"swept\"]\nsources = [\"edge_loss\"]\nfactors = [50]\n")
-                .find("out of its range"),
+                .find("s.toml:6: one_at_a_time.factors: 50 times sources.edge_loss"),
+            std::string::npos);
+  EXPECT_NE(fault("designs = [\"swept\"]\nfactors = [2, 3, 2]\n").find("factors lists 2 twice"),
+            std::string::npos);
+  EXPECT_NE(fault("designs = [\"only\"]\nsources = []\n").find("s.toml:5: one_at_a_time.sources"),
             std::string::npos);
   EXPECT_NE(fault("designs = [\"only\"]\nfactor = [2]\n").find("factor"), std::string::npos);
 }

@@ -3,25 +3,33 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "calib/board_observations.h"
 #include "calib/camera/model_nesting.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "calib/simulated_board.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/sense.h"
+#include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
+#include "sim/study/study_scenes.h"
+#include "sim/study/study_store.h"
+#include "sim/told/fresh_calibrations.h"
 #include "tests/support/error_message.h"
 #include "tests/support/small_office.h"
 
@@ -203,6 +211,121 @@ TEST_F(ToldStudies, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
   EXPECT_TRUE(!std::filesystem::exists(folder_) || std::filesystem::is_empty(folder_));
 }
 
+TEST_F(ToldStudies, RigsThatNoCamerasCanHaveAreFailedTrials) {
+  const auto cells = run(study_of("[calibration]\nviews = 4\n[sources]\ncalibration = 1000\n"));
+  int failed = 0;
+  for (const TrialResult& trial : cells[0].trials) {
+    failed += trial.status == localise::LocalisationStatus::failed ? 1 : 0;
+  }
+  EXPECT_GE(failed, 10);  // the focal length has a standard deviation of a hundred focal lengths
+}
+
+TEST_F(ToldStudies, TheTruthNeedsNoCovariance) {
+  Study study =
+      study_of("[rig]\ntruth = \"truth.json\"\nfile = \"bare.json\"\n[sources]\ncalibration = 0\n");
+  study.told_rigs["bare.json"] = study.told_rigs["truth.json"];
+  study.told_rigs["bare.json"].estimate.covariance.reset();
+  EXPECT_EQ(words(run(study)[0]), words(run(study_of("[sources]\ncalibration = 0\n"))[0]));
+}
+
+TEST_F(ToldStudies, TheRecordOfCalibrationsDoesNotDependOnThreadsAndCanBeStopped) {
+  const Study study = study_of("[calibration]\nviews = 4\n");
+  const std::string key = calibration_key(study, study.file.cells[0]);
+  const auto note = [&](const char* name) {
+    const StoreNotes notes = stored_results(folder_ / name).notes();
+    const auto found = notes.find(key);
+    return found == notes.end() ? std::string() : found->second;
+  };
+  std::vector<int> told;
+  StudyRun one{.folder = folder_ / "one", .threads = 1, .shard = {}, .command = ""};
+  one.calibration_progress = [&](int done, int total) {
+    EXPECT_EQ(total, 100);
+    told.push_back(done);
+  };
+  run_study(study, one);
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back(), 100);
+  run_study(study, {.folder = folder_ / "four", .threads = 4, .shard = {}, .command = ""});
+  EXPECT_EQ(note("one"), note("four"));
+  EXPECT_NE(note("one"), "");
+
+  std::stop_source stop;
+  StudyRun stopped{.folder = folder_ / "stopped", .threads = 2, .shard = {}, .command = ""};
+  stopped.stop = stop.get_token();
+  int most = 0;
+  stopped.calibration_progress = [&](int done, int) {
+    most = std::max(most, done);
+    stop.request_stop();
+  };
+  stopped.progress = [](int done, int) { EXPECT_EQ(done, 0); };
+  run_study(study, stopped);
+  EXPECT_LT(most, 100);
+  EXPECT_EQ(note("stopped"), "");
+  stopped.stop = {};
+  stopped.progress = {};
+  run_study(study, stopped);
+  EXPECT_EQ(note("stopped"), note("one"));
+}
+
+TEST_F(ToldStudies, OneOfSeveralShardsRecordsTheCalibrations) {
+  const Study study =
+      study_of("[calibration]\nviews = 3\n[sweep]\n\"sources.calibration\" = [1, 2]\n");
+  const std::string key = calibration_key(study, study.file.cells[0]);
+  int recorded = 0;
+  for (int i = 2; i >= 0; --i) {
+    StudyRun run{.folder = folder_, .threads = 1, .shard = {i, 3}, .command = ""};
+    run.calibration_progress = [&](int done, int) { recorded += done == 100 ? 1 : 0; };
+    run_study(study, run);
+    EXPECT_EQ(stored_results(folder_).notes().count(key), i == 0 ? 1u : 0u);
+  }
+  EXPECT_GE(recorded, 1);
+}
+
+TEST(ToldStudy, OfManyCalibrationsThatDifferOnlyTheLatestAreKept) {
+  std::string views;
+  for (int i = 3; i < 63; ++i) views += (i > 3 ? ", " : "") + std::to_string(i);
+  const Study study = study_of("[calibration]\n[sweep]\n\"calibration.views\" = [" + views + "]\n");
+  StudyScenes scenes(study);
+  std::vector<std::weak_ptr<const FreshCalibrations>> made;
+  for (const StudyCell& cell : study.file.cells) made.push_back(scenes.calibrations(cell));
+  EXPECT_EQ(std::count_if(made.begin(), made.end(), [](const auto& of) { return !of.expired(); }),
+            30);
+  EXPECT_TRUE(made.front().expired());
+  EXPECT_EQ(scenes.calibrations(study.file.cells.back()), made.back().lock());
+}
+
+TEST(ToldStudy, TheBoardOfARigFileIsNotRecordedAsASetting) {
+  Study study = study_of("[calibration]\nobservations = \"rig.json\"\n");
+  study.corners_fingerprint = "corners";
+  const StudyCell& cell = study.file.cells[0];
+  EXPECT_EQ(cell.settings.count("calibration.board"), 0u);
+  EXPECT_EQ(cell.settings.count("calibration.square_m"), 0u);
+  // The key stays as stores have it.
+  EXPECT_NE(cell_key(study, cell).find("\"calibration.board\":\"9x6\""), std::string::npos);
+  EXPECT_EQ(study_of("[calibration]\nobservations = \"c.vnl\"\n")
+                .file.cells[0]
+                .settings.count("calibration.board"),
+            1u);
+}
+
+TEST(ToldStudy, WhatDoesNotFitTheCornersNamesItsLine) {
+  Study study = study_of("[calibration]\nviews = 21\nobservations = \"rig.json\"\n");
+  study.corners = std::make_shared<const BoardObservations>(
+      simulate_board(test::nominal_rig().rig, {}, {.seed = 3, .frames = 20}).observations);
+  const auto message = [](const Study& of) {
+    return test::error_message([&] { StudyScenes(of).told(of.file.cells[0]); });
+  };
+  EXPECT_EQ(
+      message(study).rfind("s.toml:7: calibration.views = 21: the corners are of 20 frames", 0), 0u)
+      << message(study);
+  study = study_of("[calibration]\nmodel = \"pinhole\"\n[sources]\ncalibration = 2\n");
+  EXPECT_EQ(message(study).rfind("s.toml:7: calibration.model: sources.calibration = 2 cannot", 0),
+            0u)
+      << message(study);
+  study = study_of("[sources]\ncalibration = 2\n[sweep]\n\"calibration.model\" = [\"pinhole\"]\n");
+  EXPECT_EQ(message(study).rfind("s.toml:9: calibration.model: ", 0), 0u) << message(study);
+}
+
 TEST(ToldStudy, KeysHoldTheContentOfFilesAndNotTheirNames) {
   const auto key = [](const Study& study) { return cell_key(study, study.file.cells[0]); };
   const std::string text = "[rig]\ntruth = \"truth.json\"\nfile = \"loose.json\"\n";
@@ -243,6 +366,13 @@ TEST(ToldStudy, BadInputNamesTheLineAndTheRemedy) {
   EXPECT_TRUE(complains(s + "[calibration]\nview = 5\n", "views"));
   EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"c.vnl\"\ntilt_deg = 3\n",
                         "s.toml:4: calibration.tilt_deg is of simulated views"));
+  EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"\"\n",
+                        "s.toml:3: calibration.observations is empty"));
+  EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"rig.json\"\nsquare_m = 0.03\n",
+                        "s.toml:4: calibration.square_m is that of calibration.observations"));
+  EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"rig.json\"\nboard = \"8x5\"\n",
+                        "s.toml:4: calibration.board is that of calibration.observations"));
+  EXPECT_EQ(complaint_of(s + "[calibration]\nobservations = \"c.vnl\"\nboard = \"8x5\"\n"), "");
   EXPECT_TRUE(
       complains(s + "[rig]\ntruth = \"a\"\nfile = \"b\"\n[sweep]\n\"rig.truth\" = [\"a\"]\n",
                 "cannot be swept"));

@@ -21,6 +21,7 @@
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
 #include "sim/told/fresh_calibrations.h"
+#include "sim/told/possible_rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/small_office.h"
 
@@ -175,6 +176,89 @@ TEST(FreshCalibrations, AFailureIsCountedAndSaid) {
                           truth().rig, FreshCalibrationOptions{.views = 3, .tilt_rad = 1e-4}, 2),
                       1);
   EXPECT_EQ(told->told(0).failure, record.why_failed);
+}
+
+TEST(ToldRigs, ARigThatNoCamerasCanHaveIsAFailureAndNoRig) {
+  const auto failing = [](const Rig& rig) { return impossible(rig); };
+  EXPECT_EQ(failing(truth().rig), "");
+  const auto changed = [&](int parameter, double value) {
+    Rig rig = truth().rig;
+    rig.cameras[1].parameters[parameter] = value;
+    return rig;
+  };
+  EXPECT_EQ(failing(changed(0, -500)), "right.f_px is not positive");
+  EXPECT_EQ(failing(changed(1, 0)), "right.ax is not positive");
+  EXPECT_EQ(failing(changed(2, 1e5)), "right: its centre is far outside the image");
+  EXPECT_EQ(failing(changed(3, -1e5)), "right: its centre is far outside the image");
+  EXPECT_EQ(failing(changed(2, -100)), "");  // of an image that was cut
+  EXPECT_EQ(failing(changed(2, std::nan(""))), "a parameter is not finite");
+
+  const auto given = given_rig(truth().rig, changed(0, 450), 20, "told.json")->told(0);
+  EXPECT_NE(given.failure.find("right.f_px is not positive"), std::string::npos) << given.failure;
+  EXPECT_EQ(given_rig(truth().rig, changed(0, 450), 1, "told.json")->told(0).failure, "");
+  // Of draws that are larger and larger the first are rigs, the same as without the check.
+  int failed = 0;
+  for (const double psi_c : {1.0, 1e3, 1e5, 1e200, 1e308}) {
+    const auto drawn = drawn_rigs(truth().rig, *truth().covariance, psi_c, 7, "told.json");
+    for (std::uint32_t draw = 0; draw < 10; ++draw) {
+      const ToldRig told = drawn->told(draw);
+      if (told.failure.empty()) {
+        EXPECT_TRUE(same_rig(told.rig, RigSampler(truth()).sample(psi_c, 7, draw)));
+      }
+      failed += told.failure.empty() ? 0 : 1;
+      EXPECT_TRUE(psi_c > 1 || told.failure.empty());
+      EXPECT_TRUE(psi_c < 1e200 || !told.failure.empty());
+    }
+  }
+  EXPECT_GT(failed, 20);
+}
+
+// A detector reports no corners outside of the image; the others keep their draws.
+TEST(FreshCalibrations, CornersThatNoiseCarriesOutAreLeftOut) {
+  const FreshCalibrationOptions noisy{.views = 6, .pixel_sigma_px = 20};
+  const FreshCalibrations calibrations(truth().rig, noisy, 3);
+  std::size_t left_out = 0;
+  for (std::uint32_t draw = 0; draw < 20; ++draw) {
+    const BoardObservations seen = calibrations.views_of(draw);
+    const BoardObservations all =
+        simulate_board(truth().rig, noisy.board,
+                       {.seed = 3, .trial = draw, .poses = draw, .frames = 6, .pixel_sigma_px = 20})
+            .observations;
+    for (const BoardView& view : seen.views) {
+      const auto whole = std::find_if(all.views.begin(), all.views.end(), [&](const auto& v) {
+        return v.frame == view.frame && v.camera == view.camera;
+      });
+      ASSERT_NE(whole, all.views.end());
+      std::size_t i = 0;
+      for (std::size_t j = 0; j < whole->ids.size(); ++j) {
+        const Eigen::Vector2d& p = whole->pixels_px[j];
+        if (p.x() < -0.5 || p.y() < -0.5 || p.x() > 639.5 || p.y() > 479.5) {
+          ++left_out;
+          continue;
+        }
+        ASSERT_LT(i, view.ids.size());
+        EXPECT_EQ(view.ids[i], whole->ids[j]);
+        EXPECT_EQ(view.pixels_px[i++], p);
+      }
+      EXPECT_EQ(i, view.ids.size());
+    }
+    EXPECT_EQ(calibrations.of(draw)->failure.find("outside"), std::string::npos)
+        << calibrations.of(draw)->failure;
+  }
+  EXPECT_GT(left_out, 0u);
+}
+
+TEST(FreshCalibrations, OnlyTheLatestAreKeptAndTheOthersAreTheSameAgain) {
+  const FreshCalibrations few(truth().rig, {.views = 3, .most_kept = 3}, 11),
+      all(truth().rig, {.views = 3}, 11);
+  std::vector<std::shared_ptr<const FreshCalibration>> held;
+  for (const std::uint32_t draw : {0u, 0x80000000u, 1u, 2u, 3u, 1u, 0u, 0x80000000u, 4u}) {
+    held.push_back(few.of(draw));
+    EXPECT_LE(few.kept(), 3u);
+    EXPECT_TRUE(same_rig(held.back()->rig, all.of(draw)->rig));
+  }
+  EXPECT_EQ(all.kept(), 6u);
+  EXPECT_TRUE(same_rig(held[0]->rig, held[6]->rig));
 }
 
 }  // namespace

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/noise/random_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/frame_rows.h"
+#include "calib/noise/restricted_likelihood.h"
+#include "calib/noise/rig_knowledge.h"
+#include "calib/noise/scaled_factor.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/normal_equations.h"
+
+namespace vernier::internal {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double settled_sigmas = 1e-5;  // length of the last step, of rig and shape
+constexpr int most_steps = 12;
+constexpr int rounds = 2;  // of components and minimum
+
+class EffectsProblem {
+ public:
+  EffectsProblem(const BoardObservations& observations,
+                 const std::vector<bool>& held,
+                 const std::vector<RigPrior>& priors,
+                 NoiseParts parts)
+      : observations_(observations), held_(held), priors_(priors), parts_(parts) {}
+
+  MatrixXd free(const Rig& rig) const { return free_directions(rig, held_); }
+
+  /// Linearised at this state and shape.
+  RestrictedLikelihood at(const BoardState& state, const VectorXd& shape_m) const {
+    BoardObservations shaped = observations_;
+    for (std::size_t i = 0; 3 * i < static_cast<std::size_t>(shape_m.size()); ++i) {
+      shaped.target_m[i] += shape_m.segment<3>(3 * static_cast<Index>(i));
+    }
+    const MatrixXd E = free(state.rig);
+    return {frame_rows(shaped, state, E), observations_.target_m, parts_,
+            knowledge_of_priors(priors_, state.rig, E, E.cols()), shape_m};
+  }
+
+ private:
+  const BoardObservations& observations_;
+  const std::vector<bool>& held_;
+  const std::vector<RigPrior>& priors_;
+  NoiseParts parts_;
+};
+
+/// Moves state and shape by the Gauss–Newton step; its length in standard deviations.
+double move(const NoiseSolution& s, const MatrixXd& free, BoardState& state, VectorXd& shape_m) {
+  const Index n = free.cols();
+  state.rig = retract(state.rig, free * s.step.head(n));
+  for (std::size_t f = 0; f < state.T_first_board.size(); ++f) {
+    state.T_first_board[f] =
+        retract(state.T_first_board[f],
+                Eigen::Matrix<double, 6, 1>(s.pose_steps.col(static_cast<Index>(f))));
+  }
+  if (shape_m.size() > 0) shape_m += s.step.tail(shape_m.size());
+  return std::sqrt(std::max(0.0, s.step.dot(s.equations.information * s.step)));
+}
+
+/// The shape eliminated: with z the rig and s the shape, the score of z is moved by X = S_zs
+/// S_ss⁻¹, M = [I, −X]ᵀ; each frame keeps its own term Mᵀ S_f M, and the shape's prior becomes X P
+/// Xᵀ.
+void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimum& result) {
+  const Index shape = all.information.rows() - rig;
+  ReducedNormalEquations& z = result.equations;
+  z = all;
+  result.by_shape = MatrixXd::Zero(rig, 0);
+  if (shape == 0) return;
+  const ScaledFactor S_ss(all.information.bottomRightCorner(shape, shape), "the board's shape");
+  const MatrixXd X = all.information.topRightCorner(rig, shape) * S_ss.inverse();
+  MatrixXd M(rig + shape, rig);
+  M << MatrixXd::Identity(rig, rig), -X.transpose();
+  z.information = M.transpose() * all.information * M;
+  z.held_poses_diagonal = all.held_poses_diagonal.head(rig);
+  z.scores = M.transpose() * all.scores;
+  for (MatrixXd& S : z.frame_information) S = (M.transpose() * S * M).eval();
+  z.prior_information = M.transpose() * all.prior_information * M;
+  const MatrixXd P = all.prior_information.bottomRightCorner(shape, shape);
+  result.by_shape = ScaledFactor(z.information, "the rig").inverse() * X * P;
+}
+
+}  // namespace
+
+EffectsMinimum minimise_with_effects(const BoardObservations& observations,
+                                     const BoardState& start,
+                                     const std::vector<bool>& held,
+                                     const std::vector<RigPrior>& priors,
+                                     NoiseParts parts) {
+  std::vector<bool> all_held = held;
+  all_held.resize(static_cast<std::size_t>(parameter_count(start.rig)), false);
+  const EffectsProblem problem(observations, all_held, priors, parts);
+  const double spacing_m = point_spacing_m(observations.target_m);
+  EffectsMinimum result;
+  result.state = start;
+  if (parts.shape) {
+    result.shape_m = VectorXd::Zero(3 * static_cast<Index>(observations.target_m.size()));
+  }
+  std::optional<CornerNoise> last;
+  for (int round = 0; round < rounds; ++round) {
+    result.noise = fit_corner_noise(problem.at(result.state, result.shape_m), spacing_m, last);
+    last = result.noise.noise;
+    result.converged = false;
+    for (int i = 0; i < most_steps && !result.converged; ++i) {
+      const NoiseSolution s =
+          problem.at(result.state, result.shape_m).at(*last, RestrictedLikelihood::Want::step);
+      const double length = move(s, problem.free(result.state.rig), result.state, result.shape_m);
+      result.converged = length < settled_sigmas;
+    }
+  }
+  result.noise.solution = problem.at(result.state, result.shape_m)
+                              .at(result.noise.noise, RestrictedLikelihood::Want::solution);
+  result.free = problem.free(result.state.rig);
+  result.converged = result.converged && result.noise.converged;
+  eliminate_shape(result.noise.solution.equations, result.free.cols(), result);
+  if (result.equations.prior_information.isZero(0)) result.equations.prior_information.resize(0, 0);
+  return result;
+}
+
+}  // namespace vernier::internal

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/noise/rig_knowledge.h"
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+
+namespace vernier::internal {
+
+RigKnowledge knowledge_of_priors(const std::vector<RigPrior>& priors,
+                                 const Rig& rig,
+                                 const Eigen::MatrixXd& E,
+                                 Eigen::Index unknowns) {
+  if (priors.empty()) return {};
+  RigKnowledge all{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
+  const Eigen::Index n = E.cols();
+  for (const RigPrior& prior : priors) {
+    const PriorOffset offset = prior_offset(prior, rig);
+    const Eigen::MatrixXd J = offset.by_rig * E;
+    all.information.topLeftCorner(n, n) += J.transpose() * prior.information * J;
+    all.score.head(n) += J.transpose() * prior.information * offset.delta;
+  }
+  return all;
+}
+
+}  // namespace vernier::internal

@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Studies of what an estimator is told, from outside: told_study_test.py PROGRAM [unittest's options]."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import store_test
+from ranks_test import ENVIRONMENT, MPIRUN, has_mpi, ours
+from store_test import INPUTS, STUDY, Store, contents
+
+TOLD = STUDY + '[rig]\ntruth = "nominal"\n'
+# A hundred calibrations of some 0.3 s each: none is done soon.
+SLOW = TOLD + '[calibration]\nviews = 100\n'
+
+
+class Told(Store):
+    def write(self, text):
+        self.file.write_text(text)
+        shutil.rmtree(self.out, ignore_errors=True)
+
+    def refused(self, text, of):
+        self.write(text)
+        line = self.complains('study', self.file, '-o', self.out, of=of)
+        self.assertTrue(line.startswith(f'vernier: {self.file}:'), line)
+        self.assertFalse(self.out.exists())
+
+
+class NoCalibration(Told):
+    def test_is_a_doubt_that_names_the_cell(self):
+        self.write(TOLD + '[calibration]\nviews = 4\ndistance_m = 1000\n'
+                   '[sweep]\n"sources.calibration" = [0, 1]\n')
+        done = self.run_study(code=3)
+        doubt, = json.loads(done.stdout)['doubts']
+        self.assertRegex(doubt, r'^cell "sources.calibration = 1": all 100 calibrations failed, the '
+                         'first by: frame 0, camera 0: .')
+        table = self.works('study', 'status', self.out, code=3)
+        self.assertNotIn('nan', table.stdout)
+        self.assertIn('calibrations from 4 views: 100 of 100 failed', table.stdout)
+        self.assertIn(doubt, table.stderr)
+        merged = self.works('study', 'merge', self.out, '-o', self.folder / 'merged', code=3)
+        self.assertIn(doubt, merged.stderr)
+
+    def test_an_impossible_rig_is_a_failed_trial(self):
+        self.write(TOLD + '[calibration]\nviews = 4\n[sources]\ncalibration = 1000\n')
+        done = self.run_study(code=3)
+        cell, = json.loads(done.stdout)['cells']
+        self.assertEqual(cell['trials'], 12)
+        self.assertGreaterEqual(cell['failed'], 10)
+        self.assertIn('a rig that no cameras can have', done.stderr)
+
+
+class Calibrations(Told):
+    def test_are_told_once_and_at_which_scale(self):
+        self.write(TOLD + '[calibration]\n[sweep]\n"calibration.views" = [4, 5]\n'
+                   '"sources.calibration" = [0.5, 1, 2]\n')
+        lines = [line for line in self.works('study', self.file, '-o', self.out, '-q').stdout.splitlines()
+                 if line.startswith('calibrations from')]
+        self.assertEqual([line.split()[2] for line in lines], ['4', '5'])
+        for line in lines:
+            self.assertIn('depth at 5 m at psi_c = 1: rms error', line)
+
+    def interrupted(self, *command, number=signal.SIGINT, **more):
+        """What it says when a signal comes while calibrations are recorded, and how long it took."""
+        running = subprocess.Popen(list(map(str, command)), text=True, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **more)
+        said = ''
+        for line in running.stderr:
+            said += line
+            if 'recorded calibrations: ' in line:
+                break
+        asked = time.monotonic()
+        running.send_signal(number)
+        said += running.communicate(timeout=100)[1]
+        return running.returncode, said, time.monotonic() - asked
+
+    def test_can_be_interrupted(self):
+        self.write(SLOW)
+        code, said, seconds = self.interrupted(store_test.PROGRAM, 'study', self.file, '-o', self.out,
+                                               '--threads', '2')
+        self.assertEqual(code, -signal.SIGINT)
+        self.assertIn('study: recorded calibrations: 0 of 100', said)
+        self.assertRegex(said, 'vernier: ended by SIGINT after 0 blocks, which are stored; go on with: ')
+        self.assertLess(seconds, 10)  # of the half minute that the record takes on two cores
+        self.assertFalse(self.out.exists())
+
+    def test_can_be_interrupted_on_ranks(self):
+        if not shutil.which('mpirun') or not has_mpi():
+            self.skipTest('no mpirun, or built without MPI')
+        self.write(SLOW)
+        code, said, _ = self.interrupted(*MPIRUN, '-n', '2', store_test.PROGRAM, 'study', self.file,
+                                         '-o', self.out, '--threads', '1', env=ENVIRONMENT)
+        self.assertNotEqual(code, 0)
+        line = ours(said)[-1]
+        self.assertRegex(line, 'vernier: ended by SIGTERM after 0 blocks, which are stored; go on with')
+        self.assertFalse(self.out.exists() and list(self.out.glob('*.lock')))
+
+
+class Refusals(Told):
+    def test_name_the_line(self):
+        self.refused(STUDY.replace('small.world.toml', 'nosuch'), ':5: world "nosuch": no such file')
+        self.refused(STUDY + '[rig]\nfile = "nosuch"\n', ':9: rig "nosuch": no such file')
+        self.refused(TOLD.replace('nominal', 'nosuch') + '[calibration]\n',
+                     ':9: rig "nosuch": no such file')
+        self.refused(TOLD + '[sweep]\n"rig.file" = ["nominal", "nosuch"]\n',
+                     ':11: rig "nosuch": no such file')
+        self.refused(TOLD + '[calibration]\nobservations = "c.vnl"\n', ':11: c.vnl: no such file')
+        self.refused(TOLD + '[calibration]\nmodel = "pinhole"\n[sources]\ncalibration = 2\n',
+                     ':11: calibration.model: sources.calibration = 2 cannot scale')
+        rig = json.loads((pathlib.Path(os.environ['VERNIER_SHARE']) if 'VERNIER_SHARE' in os.environ else
+                          pathlib.Path(store_test.PROGRAM).parent / 'share/vernier')
+                         .joinpath('rigs/nominal.rig.json').read_text())
+        (self.folder / 'one.json').write_text(json.dumps(
+            {'format': rig['format'], 'version': rig['version'], 'cameras': rig['cameras'][:1]}))
+        self.refused(STUDY + '[rig]\nfile = "one.json"\n[sources]\ncalibration = 0\n',
+                     'one.json is a rig of 1 camera; name a rig of two cameras')
+
+    def test_a_study_in_a_report_twice(self):
+        out = self.finished()
+        page = self.folder / 'page.html'
+        self.complains('report', out, out.parent / '.' / 'out', '--no-proof', '-o', page,
+                       of='is given twice; give each study once')
+        self.assertFalse(page.exists())
+
+
+class OwnFolder(Told):
+    def test_tables_and_figures_in_the_folder_of_a_study_are_left_alone(self):
+        out = self.finished()
+        before = contents(out)
+        self.works('export', out, '-o', out / 'x.csv')
+        self.works('report', out, '--no-proof', '--figures', out, '-q', '-o', out / 'page.html')
+        self.complains('export', out, '-o', out / 'study.toml', of='study.toml')
+        made = contents(out)
+        for name, content in before.items():
+            self.assertEqual(made[name], content)
+        self.assertIn('x.csv', made)
+        self.file.write_text(STUDY.replace('trials = 12', 'trials = 18'))
+        self.assertEqual(json.loads(self.run_study().stdout)['cells'][0]['trials'], 18)
+        self.assertEqual(contents(out)['x.csv'], made['x.csv'])
+        self.works('study', 'merge', out, '-o', self.folder / 'merged', '-q')
+        self.assertEqual(sorted(contents(self.folder / 'merged')), sorted([*INPUTS, 'results.sqlite']))
+
+
+if __name__ == '__main__':
+    store_test.PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

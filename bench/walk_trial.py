@@ -4,7 +4,7 @@
 """Localisation on a real walk, and on the same walk simulated in the world built from its views.
 
     walk_trial.py PROGRAM WALK [--half first|second|both] [--spacing-m 0.5,1] [--height-m 1.6]
-                  [--simulated N] [--sources FILE] [--source NAME=VALUE …] [--page page.html]
+                  [--simulated N] [--min-sightings 2] [--sources FILE] [--source NAME=VALUE …] [--page page.html]
                   [--json figures.json]
 
 WALK is the folder of sequences/office_walk: images, depth maps, K.txt, poses.csv (world y up). Nodes
@@ -109,14 +109,15 @@ class Walk:
             raise SystemExit(done.stderr)
         return done.stdout
 
-    def build(self):
-        """The world of all views; a walk without depths in the way has no surfaces there."""
+    def build(self, min_sightings):
+        """The world of all views."""
         first = sorted(self.walk.glob('images/*.png'))[0]
         width, height = struct.unpack('>2I', first.read_bytes()[16:24])
         self.run('convert', self.walk / 'K.txt', '--size', f'{width}x{height}', '-o', 'K.json')
         return json.loads(self.run('world', 'build', '--segments', 'walk.segments', *self.poses_at,
                                    '--depth', f'{self.walk}/depth/*.png', '--rig', self.walk / 'K.txt',
-                                   '-o', 'walk.world.toml', '--json'))
+                                   '--min-sightings', min_sightings, '-o', 'walk.world.toml',
+                                   '--json'))
 
     def simulated(self, trial, sources):
         """The views of the same poses in that world."""
@@ -253,6 +254,7 @@ def main():
     parser.add_argument('--spacing-m', default='0.5,1')
     parser.add_argument('--height-m', type=float, default=1.6)
     parser.add_argument('--simulated', type=int, default=0, metavar='N')
+    parser.add_argument('--min-sightings', type=int, default=2)
     parser.add_argument('--sources', type=pathlib.Path)
     parser.add_argument('--source', action='append', default=[])
     parser.add_argument('--page', type=pathlib.Path)
@@ -266,7 +268,7 @@ def main():
               f'{options.half} half')
         simulated = []
         if options.simulated:
-            built = walk.build()
+            built = walk.build(options.min_sightings)
             print(f'world of {built["lines"]} lines and {built["surfaces"]} surfaces; sources: '
                   f'{", ".join(options.source) or "defaults"}; {options.simulated} draws')
             simulated = [walk.simulated(k, options.source) for k in range(options.simulated)]

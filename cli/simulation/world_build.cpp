@@ -36,6 +36,7 @@
 #include "sim/built/built_world.h"
 #include "sim/built/depth_cloud.h"
 #include "sim/built/planar_patches.h"
+#include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
 #include "stereo/image/depth_image.h"
@@ -147,6 +148,26 @@ std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_line
   return text;
 }
 
+/// The share of the sightings whose middle the world's surfaces hide from the view that had it.
+double hidden_share(const World& world,
+                    const JoinedLines& joined,
+                    const BuiltWorld& built,
+                    const SeenViews& seen) {
+  const Visibility visibility(world);
+  std::size_t hidden = 0, all = 0;
+  for (const int i : built.of_lines) {
+    const JoinedLine& line = joined.lines[i];
+    const double length_m = (line.b_m - line.a_m).norm();
+    for (const LineSighting& s : line.sightings) {
+      const double middle = 0.5 * (std::max(0.0, s.low_m) + std::min(length_m, s.high_m));
+      const Eigen::Vector3d at = line.a_m + middle / length_m * (line.b_m - line.a_m);
+      hidden += visibility.sees(seen.T_floor_camera[s.view].t, at) ? 0 : 1;
+      ++all;
+    }
+  }
+  return all > 0 ? static_cast<double>(hidden) / static_cast<double>(all) : 0;
+}
+
 void check(const BuildArguments& options, const CLI::App& verb) {
   if (options.segments.empty() == options.features.empty()) {
     throw Error("world build", "needs --segments or --features, one of both",
@@ -187,9 +208,16 @@ void report(const BuildArguments& options,
             const SeenViews& seen,
             const BuiltWorld& built,
             const World& world,
+            double hidden,
             Session& session) {
   const BuiltWorldReport& r = built.report;
-  constexpr double most_off_m = 0.05;
+  constexpr double most_off_m = 0.05, most_hidden = 0.2;
+  if (hidden > most_hidden) {
+    session.add_trust_warning(
+        fmt::format("surfaces hide {:.0f} % of what the views saw: check that depth maps belong to "
+                    "the images, and --depth-unit-m",
+                    100 * hidden));
+  }
   if (r.floor_m && std::abs(*r.floor_m) > most_off_m) {
     session.add_trust_warning(
         fmt::format("the depth maps show the floor at a height of {:.2f} m, not 0: give --height-m "
@@ -208,15 +236,17 @@ void report(const BuildArguments& options,
             {"lines", r.lines},
             {"surfaces", r.surfaces},
             {"surfaces_on_the_way", r.on_the_way},
+            {"hidden_share", hidden},
             {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
             {"route_m", route_m},
             {"doubts", session.trust_warnings()}};
   session.result(json, fmt::format("{} views, {} segments: {} lines joined, {} of them seen by {} "
                                    "views at least\n{} surfaces ({} more left out where the "
-                                   "cameras passed); route of {:.1f} m\nwritten to {}\n",
+                                   "cameras passed), which hide {:.1f} % of what the views saw; "
+                                   "route of {:.1f} m\nwritten to {}\n",
                                    seen.views.size(), seen.segments, r.joined, r.lines,
-                                   options.how.min_sightings, r.surfaces, r.on_the_way, route_m,
-                                   options.output));
+                                   options.how.min_sightings, r.surfaces, r.on_the_way,
+                                   100 * hidden, route_m, options.output));
 }
 
 void run(const BuildArguments& options, const CLI::App& verb, Session& session) {
@@ -238,12 +268,13 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
   if (world.surfaces.empty()) {
     session.warn(options.output + ": has no surfaces; without them nothing hides anything");
   }
+  const double hidden = hidden_share(world, joined, built, seen);
   OutputFiles outputs;
   outputs.add(options.output, format_world(built.world));
   if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built.of_lines));
   if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
   outputs.commit();
-  report(options, seen, built, world, session);
+  report(options, seen, built, world, hidden, session);
 }
 
 }  // namespace

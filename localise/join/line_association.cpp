@@ -90,15 +90,18 @@ bool LineAssociation::are_rivals(const GrowingLine& a, const GrowingLine& b) con
   return static_cast<double>(rivals) > most_share * static_cast<double>(smaller.members.size());
 }
 
-std::vector<LineAssociation::Candidate> LineAssociation::candidates(int sighting) const {
+std::vector<LineAssociation::Candidate> LineAssociation::candidates(int sighting) {
   const WorldSighting& s = sightings_[sighting];
   const Eigen::Vector3d along = (s.b_m - s.a_m).normalized();
+  const Eigen::Vector3d middle_m = 0.5 * (s.a_m + s.b_m);
   const double least_cosine = std::cos(options_.max_turn_rad);
   std::vector<Candidate> found;
   for (const int i : grid_.near(s.a_m, s.b_m)) {
     const GrowingLine& line = lines_[i];
     const LineFrame& frame = line.fit.frame;
     if (std::abs(along.dot(frame.axes.col(2))) < least_cosine) continue;
+    // what gated() would refuse, before a covariance is computed
+    if (frame.across(middle_m).norm() > options_.max_offset_m) continue;
     if (const auto d = gated(measured(s, frame), line)) {
       found.push_back({d->cost, sighting, i, d->mahalanobis2});
     }
@@ -169,7 +172,7 @@ void LineAssociation::associate_views(bool refits) {
   }
 }
 
-int LineAssociation::best_partner(int number) const {
+int LineAssociation::best_partner(int number) {
   const GrowingLine& line = lines_[number];
   const LineFrame& own = line.fit.frame;
   const Eigen::Vector3d z = own.axes.col(2);
@@ -250,7 +253,7 @@ void LineAssociation::dissolve() {
 
 void LineAssociation::drop_empty() {
   std::erase_if(lines_, [](const GrowingLine& line) { return line.members.empty(); });
-  grid_ = LineGrid(2 * options_.max_offset_m);
+  grid_ = LineGrid(cell_m(options_));
   for (int i = 0; i < static_cast<int>(lines_.size()); ++i) {
     lines_[i].is_in_grid = false;
     keep_in_grid(i);

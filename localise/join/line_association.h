@@ -25,7 +25,7 @@ struct GrowingLine {
 class LineAssociation {
  public:
   LineAssociation(std::span<const WorldSighting> sightings, const JoinOptions& options)
-      : sightings_(sightings), options_(options), grid_(2 * options.max_offset_m) {}
+      : sightings_(sightings), options_(options), grid_(cell_m(options)) {}
 
   /// Lines with at least one member, each sighting in one.
   std::vector<GrowingLine> associate();
@@ -43,7 +43,7 @@ class LineAssociation {
   void associate_view(int first, int last, bool refits);
   void associate_views(bool refits);
   void associate_anew();
-  std::vector<Candidate> candidates(int sighting) const;
+  std::vector<Candidate> candidates(int sighting);
   /// Of a measurement from a line; nothing if it cannot be of it.
   std::optional<LineDistance> gated(const LineMeasurement& m, const GrowingLine& line) const {
     return gated(m, line, options_.gate);
@@ -59,11 +59,16 @@ class LineAssociation {
   void keep_in_grid(int line);
   /// Merges lines that agree; how many.
   int merge();
-  int best_partner(int line) const;
+  int best_partner(int line);
   /// Gives the members of lines that others explain as well to these, the smallest lines first.
   void dissolve();
   bool dissolve(int line);
   void drop_empty();
+
+  /// What is within the gates of a segment is within a cell of it, with what the grid lags behind.
+  static double cell_m(const JoinOptions& options) {
+    return 1.5 * options.max_offset_m + options.max_gap_m;
+  }
 
   std::span<const WorldSighting> sightings_;
   JoinOptions options_;

@@ -3,6 +3,7 @@
 #include "localise/join/line_grid.h"
 
 #include <algorithm>
+#include <array>
 
 namespace vernier::localise::internal {
 
@@ -32,14 +33,18 @@ std::vector<std::uint64_t> LineGrid::passed(const Eigen::Vector3d& a_m,
   return keys;
 }
 
-std::vector<int> LineGrid::near(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const {
+std::vector<int> LineGrid::near(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
   std::vector<int> found;
+  ++query_;
   for (const std::uint64_t key : passed(a_m, b_m, 1)) {
     const auto cell = cells_.find(key);
-    if (cell != cells_.end()) found.insert(found.end(), cell->second.begin(), cell->second.end());
+    if (cell == cells_.end()) continue;
+    for (const int number : cell->second) {
+      if (last_query_[number] == query_) continue;
+      last_query_[number] = query_;
+      found.push_back(number);
+    }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 

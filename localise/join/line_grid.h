@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -18,14 +17,15 @@ class LineGrid {
   explicit LineGrid(double cell_m) : cell_m_(cell_m) {}
 
   void add(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, int number) {
+    if (number >= static_cast<int>(last_query_.size())) last_query_.resize(number + 1, 0);
     for (const std::uint64_t key : passed(a_m, b_m, 0)) {
       std::vector<int>& cell = cells_[key];
       if (cell.empty() || cell.back() != number) cell.push_back(number);
     }
   }
 
-  /// Numbers near a segment, ascending, each once.
-  std::vector<int> near(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const;
+  /// Numbers near a segment, each once, in an order of its own that is always the same.
+  std::vector<int> near(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m);
 
  private:
   /// Keys of the cells within `reach` cells of those that it passes, ascending.
@@ -35,6 +35,8 @@ class LineGrid {
 
   double cell_m_;
   std::unordered_map<std::uint64_t, std::vector<int>> cells_;
+  std::vector<int> last_query_;  // by number: when it was found last
+  int query_ = 0;
 };
 
 }  // namespace vernier::localise::internal

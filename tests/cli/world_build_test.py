@@ -53,6 +53,7 @@ class WorldBuild(verb_calls.ProgramCase):
         self.assertEqual(found['views'], 5)
         self.assertGreater(found['surfaces'], 3)
         self.assertGreater(found['joined'], found['lines'] - 1)
+        self.assertLess(found['hidden_share'], 0.1)
         rows = self.lines()
         self.assertEqual(len(rows), found['lines'])
         upright = [row for row in rows if abs(row['a_z_m'] - row['b_z_m']) > 0.5]
@@ -147,6 +148,7 @@ class WorldBuild(verb_calls.ProgramCase):
         self.assertEqual(found['views'], 3)
         self.assertGreater(found['lines'], 150)
         self.assertGreater(found['surfaces'], 50)
+        self.assertLess(found['hidden_share'], 0.1)
 
 
 if __name__ == '__main__':

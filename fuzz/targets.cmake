@@ -29,6 +29,7 @@ set(vernier_fuzz_targets
   fuzz/targets/python_literal.cpp
   fuzz/targets/rig_json.cpp
   fuzz/targets/ros_camera_info.cpp
+  fuzz/targets/segments_file.cpp
   fuzz/targets/stereo_scenes.cpp
   fuzz/targets/study_store.cpp
   fuzz/targets/study_toml.cpp

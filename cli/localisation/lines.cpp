@@ -26,10 +26,11 @@
 #include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/simulation/floor_poses.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
-#include "localise/views/camera_poses.h"
 #include "localise/views/depth_view.h"
+#include "localise/views/segments_file.h"
 #include "stereo/corners/match_images.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/depth_image.h"
@@ -53,16 +54,6 @@ struct LinesFigures {
   std::size_t segments = 0, placed = 0;
 };
 
-/// The axis that points up in the world of the poses, and its sign.
-std::pair<int, int> up_axis(const std::string& word) {
-  const bool down = word.starts_with('-');
-  const std::string axis = word.substr(down ? 1 : 0);
-  if (axis != "x" && axis != "y" && axis != "z") {
-    throw Error("--up", "is no axis of the world", "give x, y, z, -x, -y or -z");
-  }
-  return {axis[0] - 'x', down ? -1 : 1};
-}
-
 /// The turn of a camera against a level one, from its pitch and roll.
 Eigen::Matrix3d turn_of(const LinesArguments& o) {
   constexpr double degree = std::numbers::pi / 180;
@@ -77,28 +68,6 @@ Camera camera_of(const LinesArguments& options, const std::string& image, Sessio
                              read.estimate.rig.cameras[0].name));
   }
   return read.estimate.rig.cameras.at(0);
-}
-
-/// Pixels and both ends in the camera's frame, with their covariance: a x, y, z, then b.
-std::string segments_line(const std::string& image, const DepthSegments& segments) {
-  Json list = Json::array();
-  const auto vector = [](const auto& v) { return Json(std::vector<double>(v.begin(), v.end())); };
-  for (std::size_t i = 0; i < segments.image.size(); ++i) {
-    const MeasuredSegment& s = segments.in_space[i];
-    if (s.status != SegmentStatus::placed) continue;
-    Json covariance = Json::array();
-    for (int row = 0; row < 6; ++row) {
-      const Eigen::Matrix<double, 6, 1> values = s.independent_m2.row(row);
-      covariance.push_back(vector(values));
-    }
-    const auto& px = segments.image[i];
-    list.push_back({{"image_px", {px.a_px.x(), px.a_px.y(), px.b_px.x(), px.b_px.y()}},
-                    {"a_m", vector(s.segment.a_m)},
-                    {"b_m", vector(s.segment.b_m)},
-                    {"covariance_m2", covariance},
-                    {"reliable", s.segment.reliable}});
-  }
-  return Json{{"image", image}, {"segments", list}}.dump() + "\n";
 }
 
 /// Where the camera stands at an image, as far as it is known.
@@ -116,21 +85,8 @@ std::vector<Stance> stances(const LinesArguments& options, const std::vector<Ima
   }
   std::vector<std::filesystem::path> images;
   for (const ImageFiles& pair : files) images.push_back(pair.left);
-  const CameraPoses read = read_camera_poses(options.poses);
-  if (read.of_body) {
-    throw Error(options.poses, "holds poses of the body, not of the camera",
-                "give those of the camera");
-  }
-  const auto [axis, sign] = up_axis(options.up);
-  const std::vector<Pose> poses = poses_of_images(read, images, options.poses);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const LevelPose level = level_pose(poses[i], axis, sign, images[i].string());
-    all.push_back({level.pose, options.height_m + level.height_m, level.R_level_camera});
-    if (!(all.back().height_m > 0)) {
-      throw Error(images[i].string(),
-                  fmt::format("its camera is {:.2f} m above the floor", all.back().height_m),
-                  "give the height of the poses' origin above the floor, --height-m, and --up");
-    }
+  for (const FloorPose& at : floor_poses({options.poses, options.up, options.height_m}, images)) {
+    all.push_back({at.level.pose, at.level.height_m, at.level.R_level_camera});
   }
   return all;
 }
@@ -226,7 +182,8 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);
     views.append(view_line(seen));
     if (segments_file) {
-      segments_file->append(segments_line(files[i].left.filename().string(), segments));
+      segments_file->append(
+          segments_line(segments_of(files[i].left.filename().string(), segments)));
     }
     progress.update(static_cast<int>(i + 1), static_cast<int>(files.size()));
   }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -21,8 +22,10 @@
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/simulation/floor_poses.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/sighting_picture.h"
+#include "cli/simulation/simulate_views.h"
 #include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
@@ -47,9 +50,57 @@ struct SimulateArguments {
   std::uint64_t seed = 1;
   std::uint32_t trial = 0;
   std::vector<std::string> sources;
+  SimulatedViewOptions views;
 };
 
-void run(const SimulateArguments& options, Session& session) {
+void check(const SimulateArguments& options, const CLI::App& verb) {
+  if (options.pose.empty() == options.views.at.poses.empty()) {
+    throw Error("simulate", "needs --pose or --poses, one of both",
+                "give one pose to look from, or a file of poses");
+  }
+  if (options.pose.empty()) {
+    up_axis(options.views.at.up);
+    constexpr std::array of_one{"--picture", "--pitch-deg"};
+    refuse_options(verb, of_one, "a file of poses is given, --poses");
+    if (options.views.output.empty()) {
+      throw Error("--poses " + options.views.at.poses, "is given without --features",
+                  "name the file of views to write");
+    }
+  } else {
+    if (!(options.height_m > 0)) {
+      throw Error("--height-m", "is not above 0", "give the height of the camera");
+    }
+    constexpr std::array of_views{"--features", "--segments", "--up", "--depth-sigma-per-m2"};
+    refuse_options(verb, of_views, "no file of poses is given, --poses");
+  }
+}
+
+/// Views of a camera with depth maps, from a file of poses.
+void run_views(const SimulateArguments& options, Session& session) {
+  SourceSettings initial;
+  initial.calibration = 0;
+  initial.epipolar_reject_deg = 0;  // depths are known along rows too
+  const SourceSettings sources = sources_of(options.sources, initial);
+  if (sources.calibration > 0) {
+    throw Error("--source calibration", "is given for a camera with depth maps, which has no pair",
+                "leave it out; --depth-sigma-per-m2 is the error of its depths");
+  }
+  const std::filesystem::path file = find_world(options.world);
+  World world = with_errors_of(file.string(), [&] { return build_world(read_world(file)); });
+  if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
+  const Visibility visibility = with_errors_of(options.world, [&] {
+    return Visibility(world, options.visibility == "exact" ? VisibilityMethod::exact
+                                                           : VisibilityMethod::view_sets);
+  });
+  SimulatedViewOptions views = options.views;
+  views.at.height_m = options.height_m;
+  simulate_views(visibility, options.rig, sources, {.seed = options.seed, .trial = options.trial},
+                 views, session);
+}
+
+void run(const SimulateArguments& options, const CLI::App& verb, Session& session) {
+  check(options, verb);
+  if (options.pose.empty()) return run_views(options, session);
   const std::string ending = std::filesystem::path(options.picture).extension().string();
   const bool is_png = ending == ".png";
   if (!options.picture.empty() && !is_png && ending != ".svg") {
@@ -137,9 +188,24 @@ void add_simulate(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"exact", "view_sets"}))
       ->capture_default_str();
   verb->add_option("--rig", o->rig, "rig file or shipped name")->capture_default_str();
-  verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)")->required();
-  verb->add_option("--height-m", o->height_m, "camera height, metres")
-      ->check(finite_and_positive)
+  verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)");
+  verb->add_option("--poses", o->views.at.poses,
+                   "file of poses instead: views of a camera with depth maps, the rig's first");
+  verb->add_option("--features", o->views.output,
+                   "with --poses: file of views to write, for map make and localise");
+  verb->add_option("--segments", o->views.segments,
+                   "with --poses: also all segments with the covariance of both ends, as lines has "
+                   "them");
+  verb->add_option("--up", o->views.at.up,
+                   "axis of the poses' world that points up: x, y, z, -x, -y or -z")
+      ->capture_default_str();
+  verb->add_option("--depth-sigma-per-m2", o->views.depth_per_m2,
+                   "with --poses: error of a depth that an edge's pixels share, of its square, 1/m")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  verb->add_option("--height-m", o->height_m,
+                   "camera height, metres; with --poses: of their origin")
+      ->check(finite)
       ->capture_default_str();
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(finite)
@@ -153,7 +219,8 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("--trial", o->trial, "number of the random draw for this seed")
       ->capture_default_str();
-  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }
 
 }  // namespace vernier::cli

@@ -22,6 +22,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_picture.h"
+#include "cli/simulation/world_build.h"
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_sets.h"
 #include "cli/simulation/world_view.h"
@@ -290,6 +291,7 @@ void add_world(CLI::App& app, Session& session) {
   router->callback([r, &session] { session.action = [=, &session] { route(*r, session); }; });
 
   add_world_sets(*verb, session);
+  add_world_build(*verb, session);
   add_world_import(*verb, session);
   add_world_view(*verb, session);
 }

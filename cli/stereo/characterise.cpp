@@ -11,6 +11,7 @@
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/stereo/characterise_report.h"
+#include "cli/stereo/characterise_sequence.h"
 #include "cli/stereo/evaluate_scene.h"
 #include "cli/stereo/matcher_names.h"
 #include "cli/stereo/scene_options.h"
@@ -31,6 +32,7 @@ struct CharacteriseArguments {
   std::uint64_t seed = 1;
   bool repair = false;
   PairSamplesOptions sampling;
+  SequenceArguments sequence;
 };
 
 /// The settings that affect the results, apart from the pairs.
@@ -126,10 +128,14 @@ void run(const CharacteriseArguments& options, Session& session) {
 
 void add_characterise(CLI::App& app, Session& session) {
   auto o = std::make_shared<CharacteriseArguments>();
-  CLI::App* verb = add_verb(app, session, "characterise",
-                            "measure the simulator's error sources on pairs with ground truth",
-                            "vernier characterise --scenes pairs.toml -o sources.toml\n"
-                            "  then in a study file:  [sources]  file = \"sources.toml\"");
+  CLI::App* verb =
+      add_verb(app, session, "characterise",
+               "measure the simulator's error sources on pairs with ground truth, or on a "
+               "sequence of known motion",
+               "vernier characterise --scenes pairs.toml -o sources.toml\n"
+               "  vernier characterise --sequence segments.jsonl --poses poses.csv "
+               "--rig K.txt --depth 'depth/*.png' -o sources.toml\n"
+               "  then in a study file:  [sources]  file = \"sources.toml\"");
   add_scene_options(*verb, o->scenes);
   auto* matcher =
       verb->add_option("--matcher", o->matcher.names,
@@ -152,9 +158,18 @@ void add_characterise(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_flag("--repair", o->repair, "correct the vertical misalignment estimated from corners");
   verb->add_option("--seed", o->seed, "random seed of the bootstrap")->capture_default_str();
+  add_sequence_options(*verb, o->sequence);
   verb->callback([o, verb, &session] {
-    require_scenes(*verb, o->scenes);
-    session.action = [=, &session] { run(*o, session); };
+    if (o->sequence.segments.empty()) require_scenes(*verb, o->scenes);
+    session.action = [=, &session] {
+      check_sequence_options(*verb, o->sequence);
+      if (o->sequence.segments.empty()) {
+        run(*o, session);
+        return;
+      }
+      o->sequence.how.min_length_px = o->sampling.warp.min_length_px;
+      characterise_sequence(o->sequence, o->output, o->seed, session);
+    };
   });
 }
 

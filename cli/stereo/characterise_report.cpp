@@ -14,7 +14,6 @@
 #include "sim/sources/sources_file.h"
 
 namespace vernier::cli {
-namespace {
 
 Json measured_json(const MeasuredValue& measured) {
   return {
@@ -22,6 +21,8 @@ Json measured_json(const MeasuredValue& measured) {
       {"interval_95", {json_number(measured.interval.low), json_number(measured.interval.high)}},
       {"n", measured.samples}};
 }
+
+namespace {
 
 /// Range of a source's values over the pairs.
 Interval over_pairs(const CharacteriseReport& report, std::size_t source) {

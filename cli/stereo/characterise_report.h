@@ -19,6 +19,9 @@ struct CharacteriseReport {
   std::string matcher;
 };
 
+/// {"value": …, "interval_95": […, …], "n": …}
+Json measured_json(const MeasuredValue& measured);
+
 Json report_json(const CharacteriseReport& report);
 std::string report_text(const CharacteriseReport& report);
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <span>
 #include <vector>
 
+#include "calib/interval.h"
 #include "calib/statistics/cluster_interval.h"
 #include "sim/sources/measured_sources.h"
 #include "stereo/evaluation/pair_samples.h"
@@ -68,6 +70,15 @@ class ClusteredSamples {
 /// Clamps at 0.
 inline void not_below_zero(MeasuredValue& measured) {
   if (measured.interval.low < 0) measured.interval.low = 0;
+}
+
+/// The interval of a fraction is at least that of independent trials: otherwise identical samples
+/// would have none.
+inline void widen_to_wilson(MeasuredValue& share) {
+  if (!share.known()) return;
+  const Interval wilson = wilson_interval(share.value * share.samples, share.samples);
+  share.interval.low = std::fmin(share.interval.low, wilson.low);
+  share.interval.high = std::min(1.0, std::fmax(share.interval.high, wilson.high));
 }
 
 /// A statistic of all samples with its interval; unset if there are too few.

@@ -9,7 +9,6 @@
 #include <map>
 #include <vector>
 
-#include "calib/interval.h"
 #include "calib/statistics/quantile.h"
 #include "sim/sources.h"
 #include "sim/sources/clustered_samples.h"
@@ -28,15 +27,6 @@ namespace {
 
 constexpr double wrong_corner_px = 1.5, wrong_line_px = 3;
 constexpr int disparity_bins = 4;
-
-/// The interval of a fraction is at least that of independent trials: otherwise identical samples
-/// would have none.
-void widen_to_wilson(MeasuredValue& share) {
-  if (!share.known()) return;
-  const Interval wilson = wilson_interval(share.value * share.samples, share.samples);
-  share.interval.low = std::fmin(share.interval.low, wilson.low);
-  share.interval.high = std::min(1.0, std::fmax(share.interval.high, wilson.high));
-}
 
 /// Mismatches are uniform over a disc or (`line`) over ± a range, and detected if they are more
 /// than some pixels off.

@@ -31,36 +31,20 @@ std::string text_of(const MeasuredValue& measured) {
   return measured.known() ? fmt::format("{:.4g}", measured.value) : "unknown";
 }
 
-SourceEntry entry_of(const char* key, const MeasuredValue& measured, std::string note) {
-  const SourceParameter& parameter = parameter_of(key);
-  SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
-                    std::move(note)};
-  if (!entry.written) {
-    entry.note = fmt::format("only {} samples", measured.samples);
-    return entry;
-  }
-  entry.measured.value = rounded(std::clamp(measured.value, parameter.low, parameter.high));
-  if (measured.value < parameter.low || measured.value > parameter.high) {
-    entry.note += fmt::format("; measured {:.4g}, limited to the accepted range {:g} to {:g}",
-                              measured.value, parameter.low, parameter.high);
-  }
-  return entry;
-}
-
 SourceEntry reach_entry(const char* key,
                         const MeasuredValue& reach_px,
                         int wrong,
                         const char* what) {
-  SourceEntry entry = entry_of(key, reach_px, what);
+  SourceEntry entry = source_entry(key, reach_px, what);
   if (!entry.written) entry.note = fmt::format("only {} mismatches", wrong);
   return entry;
 }
 
 SourceEntry lateral_shift_entry(const MeasuredLateralShift& shift, ShiftMode mode) {
   SourceEntry entry =
-      entry_of("lateral_shift_px", shift.independent_px,
-               fmt::format("independent in each camera; the views differ by {:.3f} px (RMS)",
-                           shift.relative_px.value));
+      source_entry("lateral_shift_px", shift.independent_px,
+                   fmt::format("independent in each camera; the views differ by {:.3f} px (RMS)",
+                               shift.relative_px.value));
   if (!entry.written || mode == ShiftMode::independent) return entry;
   entry.written = false;
   entry.note = fmt::format(
@@ -84,29 +68,52 @@ std::string interval_text(const MeasuredValue& measured) {
 }
 
 std::string lines_of(const SourceEntry& entry, const MeasuredSources& sources, ShiftMode mode) {
-  if (!entry.written) {
-    std::string text =
-        fmt::format("# {} = {:.4g}: default kept; {}\n", entry.key, entry.otherwise, entry.note);
-    if (entry.key == "lateral_shift_px" && sources.lateral_shift.independent_px.known()) {
-      text += fmt::format(
-          "#   to use the difference between the cameras ({}{} segments):\n"
-          "#   lateral_shift_mode = \"independent\"\n#   lateral_shift_px = {:.4g}\n",
-          interval_text(entry.measured), entry.measured.samples,
-          sources.lateral_shift.independent_px.value);
-    }
-    return text;
+  if (entry.key != "lateral_shift_px") return source_line(entry);
+  if (entry.written) {
+    const bool independent = mode == ShiftMode::independent;
+    return (independent ? "lateral_shift_mode = \"independent\"\n" : "") + source_line(entry);
   }
-  std::string text;
-  if (entry.key == "lateral_shift_px" && mode == ShiftMode::independent) {
-    text = "lateral_shift_mode = \"independent\"\n";
+  std::string text = source_line(entry);
+  if (sources.lateral_shift.independent_px.known()) {
+    text += fmt::format(
+        "#   to use the difference between the cameras ({}{} segments):\n"
+        "#   lateral_shift_mode = \"independent\"\n#   lateral_shift_px = {:.4g}\n",
+        interval_text(entry.measured), entry.measured.samples,
+        sources.lateral_shift.independent_px.value);
   }
-  const std::string value = fmt::format("{} = {}", entry.key, entry.measured.value);
-  return text + fmt::format("{:<28}# {}n {}; default {:.4g}; {}\n", value,
-                            interval_text(entry.measured), entry.measured.samples, entry.otherwise,
-                            entry.note);
+  return text;
 }
 
 }  // namespace
+
+SourceEntry source_entry(const char* key, const MeasuredValue& measured, std::string note) {
+  const SourceParameter& parameter = parameter_of(key);
+  SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
+                    std::move(note)};
+  if (!entry.written) {
+    entry.note = fmt::format("only {} samples", measured.samples);
+    return entry;
+  }
+  entry.measured.value = rounded(std::clamp(measured.value, parameter.low, parameter.high));
+  if (measured.value < parameter.low || measured.value > parameter.high) {
+    entry.note += fmt::format("; measured {:.4g}, limited to the accepted range {:g} to {:g}",
+                              measured.value, parameter.low, parameter.high);
+  }
+  return entry;
+}
+
+SourceEntry kept_entry(const char* key, std::string why) {
+  return {key, {}, SourceSettings().*parameter_of(key).value, false, std::move(why)};
+}
+
+std::string source_line(const SourceEntry& entry) {
+  if (!entry.written) {
+    return fmt::format("# {} = {:.4g}: default kept; {}\n", entry.key, entry.otherwise, entry.note);
+  }
+  const std::string value = fmt::format("{} = {}", entry.key, entry.measured.value);
+  return fmt::format("{:<28}# {}n {}; default {:.4g}; {}\n", value, interval_text(entry.measured),
+                     entry.measured.samples, entry.otherwise, entry.note);
+}
 
 std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMode mode) {
   const MeasuredEdgeLoss& loss = sources.edge_loss;
@@ -116,22 +123,22 @@ std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMod
   std::vector<SourceEntry> entries;
   entries.push_back(lateral_shift_entry(sources.lateral_shift, mode));
   entries.push_back(
-      entry_of("edge_loss", loss.share,
-               fmt::format("fraction of left segments' length on no right segment; right "
-                           "to left {}, on no edge point {}",
-                           text_of(loss.to_left), text_of(loss.on_edges))));
-  entries.push_back(entry_of(
+      source_entry("edge_loss", loss.share,
+                   fmt::format("fraction of left segments' length on no right segment; right "
+                               "to left {}, on no edge point {}",
+                               text_of(loss.to_left), text_of(loss.on_edges))));
+  entries.push_back(source_entry(
       "endpoint_sigma_px", ends.across_px,
       fmt::format("across the line; along it {:.3f} px; {:.0f} % of segments, cut short, excluded",
                   ends.along_px.value, 100 * ends.broken)));
-  entries.push_back(entry_of(
+  entries.push_back(source_entry(
       "stereo_mismatch", stereo.share,
       fmt::format("fraction of matched lines; {} of them wrong by more than 3 px", stereo.wrong)));
   entries.push_back(reach_entry("stereo_mismatch_px", stereo.reach_px, stereo.wrong,
                                 "± range with the median error of the mismatches"));
-  entries.push_back(entry_of("corner_loss", corners.loss,
-                             "fraction of left corners not detected in the right image"));
-  entries.push_back(entry_of(
+  entries.push_back(source_entry("corner_loss", corners.loss,
+                                 "fraction of left corners not detected in the right image"));
+  entries.push_back(source_entry(
       "corner_mismatch", corners.mismatch,
       fmt::format("fraction of matches; {} of them wrong by more than 1.5 px", corners.wrong)));
   entries.push_back(reach_entry("corner_mismatch_px", corners.reach_px, corners.wrong,

@@ -19,6 +19,14 @@ struct SourceEntry {
   std::string note;        ///< what was measured, or why the default is kept
 };
 
+/// A key with what was measured of it, limited to what is accepted; the default, and why, with too
+/// few samples.
+SourceEntry source_entry(const char* key, const MeasuredValue& measured, std::string note);
+/// A key that keeps its default, and why.
+SourceEntry kept_entry(const char* key, std::string why);
+/// Its line in the file: the value, or the default as a comment.
+std::string source_line(const SourceEntry& entry);
+
 /// The simulator's keys in the order in which they act. Keys that cannot be measured keep their
 /// default: `calibration` and `epipolar_reject_deg` cannot be measured from images, and
 /// `lateral_shift_px` only as far as it differs between two simultaneous views. `mode` selects what

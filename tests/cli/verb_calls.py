@@ -130,6 +130,29 @@ def png16(rows):
             chunk(b'IEND', b''))
 
 
+def write_seen(folder):
+    """Three views of a wall 3 m ahead with upright lines on it, of a camera that steps sideways."""
+    covariance = [[1e-4 * (i == k) for k in range(6)] for i in range(6)]
+    poses = ['image,' + ','.join(f't{i}{j}' for i in range(4) for j in range(4))]
+    seen = []
+    for i in range(3):
+        segments = [{'image_px': [40 * n, 20, 40 * n, 90], 'a_m': [0.5 * n - 1 - 0.2 * i, -1, 3],
+                     'b_m': [0.5 * n - 1 - 0.2 * i, 1, 3], 'covariance_m2': covariance}
+                    for n in range(5)]
+        seen.append(json.dumps({'image': f'seen{i}.png', 'segments': segments}))
+        poses.append(f'seen{i}.png,0,0,1,0,-1,0,0,{-0.2 * i},0,-1,0,0.3,0,0,0,1')
+        (folder / f'seen{i}.png').write_bytes(png16([[3000] * 160] * 120))
+    (folder / 'seen.segments').write_text('\n'.join(seen) + '\n')
+    (folder / 'seen.csv').write_text('\n'.join(poses) + '\n')
+    (folder / 'inside.csv').write_text(poses[0] + '\n' + ''.join(
+        f'{i},1,0,0,{3 + 0.1 * i},0,0,1,2,0,-1,0,0,0,0,0,1\n' for i in range(3)))
+    one = {'name': 'depth', 'model': 'pinhole', 'size_px': [160, 120],
+           'parameters': {'f_px': 150, 'ax': 1, 'ay': 1, 'ox_px': 79.5, 'oy_px': 59.5}}
+    (folder / 'depth.rig.json').write_text(json.dumps(
+        {'format': 'vernier/rig', 'version': 1, 'cameras': [one]}))
+    (folder / 'K.txt').write_text('150 0 80\n0 150 60\n0 0 1\n')
+
+
 def write_inputs(folder):
     """What the calls read, made without the program."""
     folder = pathlib.Path(folder)
@@ -153,6 +176,8 @@ def write_inputs(folder):
     (begun / 'rig.json').write_bytes((ROOT / 'datasets/rigs/nominal.rig.json').read_bytes())
     (folder / 'room.ply').write_text(room())
     (folder / 'views.jsonl').write_text(features())
+    write_seen(folder)
+    characterise_test.write_sequence(folder)
     (folder / 'known.map').write_bytes(map_file(features().splitlines()))
 
 
@@ -184,14 +209,21 @@ def calls():
         Call('characterise', ['characterise', '--left', 'big_left.pgm', '--right', 'big_right.pgm',
                               '--truth', 'big_truth.pgm', '--truth-scale', '4', '--max-disparity',
                               '20', '-o', 'out.toml'], ['out.toml']),
+        Call('characterise_sequence', [*characterise_test.SEQUENCE, '-o', 'out.toml'], ['out.toml']),
         Call('world', ['world', 'make', '--seed', '7', '-o', 'out.toml'], ['out.toml']),
         Call('world_import', ['world', 'import', 'room.ply', '-o', 'out.toml', '--plan', 'out.svg'],
              ['out.toml', 'out.svg']),
+        Call('world_build', ['world', 'build', '--segments', 'seen.segments', '--poses', 'seen.csv',
+                             '--depth', 'seen*.png', '--rig', 'K.txt', '-o', 'out.toml', '--lines',
+                             'out.csv', '--plan', 'out.svg'], ['out.toml', 'out.csv', 'out.svg']),
         Call('world_export', ['world', 'export', 'workshop', '-o', 'out.ply'], ['out.ply']),
         Call('world_view', ['world', 'view', 'workshop', '--poses', '3', '-o', 'out.html'], ['out.html']),
         Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0',
                           '--picture', 'out.svg'], ['out.svg']),
+        Call('simulate_views', ['simulate', '--world', 'posts.world.toml', '--rig', 'depth.rig.json',
+                                '--poses', 'inside.csv', '--height-m', '1.2', '--features', 'out.jsonl',
+                                '--segments', 'out.segments'], ['out.jsonl', 'out.segments']),
         Call('drive', ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o', 'out.jsonl',
                        '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
         Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],

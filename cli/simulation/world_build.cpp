@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/world_build.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/error_place.h"
+#include "calib/base/output_files.h"
+#include "calib/board_detection.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
+#include "cli/program/session.h"
+#include "cli/simulation/floor_poses.h"
+#include "cli/simulation/plan_picture.h"
+#include "localise/join/place_segments.h"
+#include "localise/joined_lines.h"
+#include "localise/place.h"
+#include "localise/view_file.h"
+#include "localise/views/segments_file.h"
+#include "sim/built/built_world.h"
+#include "sim/built/depth_cloud.h"
+#include "sim/built/planar_patches.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "sim/world_file.h"
+#include "stereo/image/depth_image.h"
+
+namespace vernier::cli {
+namespace {
+
+struct BuildArguments {
+  std::string segments, features, depth, rig, output, lines, plan, name;
+  FloorPoseOptions at;
+  double depth_unit_m = 0.001;
+  JoinOptions join;
+  DepthCloudOptions cloud;
+  BuiltWorldOptions how;
+};
+
+/// What was seen, in the frame of the floor.
+struct SeenViews {
+  std::vector<SegmentsOfView> views;
+  std::vector<Pose> T_floor_camera;
+  std::size_t segments = 0;
+};
+
+SeenViews seen_in_segments(const BuildArguments& options) {
+  const std::vector<SegmentsOfImage> images = read_segments(options.segments);
+  std::vector<std::filesystem::path> names;
+  for (const SegmentsOfImage& image : images) names.emplace_back(image.image);
+  SeenViews seen;
+  const std::vector<FloorPose> at = floor_poses(options.at, names);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    SegmentsOfView view{at[i].T_floor_camera, {}};
+    for (const ImageSegmentInSpace& s : images[i].segments) {
+      if (s.reliable) view.segments.push_back(s.in_space);
+    }
+    seen.segments += view.segments.size();
+    seen.T_floor_camera.push_back(view.T_world_camera);
+    seen.views.push_back(std::move(view));
+  }
+  return seen;
+}
+
+SeenViews seen_in_features(const BuildArguments& options, Session& session) {
+  const auto rig =
+      options.rig.empty()
+          ? nullptr
+          : std::make_shared<const Rig>(read_named_rig(options.rig, session).estimate.rig);
+  SeenViews seen;
+  const std::vector<RecordedLooks> views = read_views(options.features, rig);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].pose) {
+      throw Error(fmt::format("{}: view {}", options.features, i + 1), "has no pose",
+                  "give views of known pose");
+    }
+    for (const Look& look : views[i].looks) {
+      const Pose2D pose = compose(*views[i].pose, {0, 0, look.turn_rad});
+      seen.views.push_back(segments_of_place(look.view, pose));
+      seen.segments += seen.views.back().segments.size();
+      const Pose& T_floor_robot = seen.views.back().T_world_camera;
+      seen.T_floor_camera.push_back(T_floor_robot * T_robot_camera(look.view.mount));
+    }
+  }
+  return seen;
+}
+
+/// Surfaces of the depth maps, which belong to the views in order.
+std::vector<Patch> patches_of(const BuildArguments& options,
+                              const std::vector<std::filesystem::path>& maps,
+                              const std::vector<Pose>& T_floor_camera,
+                              Session& session) {
+  if (maps.size() != T_floor_camera.size()) {
+    throw Error("--depth",
+                fmt::format("matches {} maps, and there are {} images of segments", maps.size(),
+                            T_floor_camera.size()),
+                "give the map of each image, in the same order by name");
+  }
+  const ReadRig rig = read_named_rig(options.rig, session, maps.front().string());
+  DepthCloud cloud(options.cloud);
+  Progress progress(session, "depth maps");
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const DepthImage depth = read_depth_image(maps[i], options.depth_unit_m);
+    with_errors_of(maps[i].string(), [&] {
+      cloud.add(depth, rig.estimate.rig.cameras.at(0), T_floor_camera[i]);
+      return 0;
+    });
+    progress.update(static_cast<int>(i + 1), static_cast<int>(maps.size()));
+  }
+  return planar_patches(cloud);
+}
+
+/// The world's segments with their covariance, as a table.
+std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_lines) {
+  std::string text = "segment,views,sightings,chi2,a_x_m,a_y_m,a_z_m,b_x_m,b_y_m,b_z_m";
+  constexpr std::array names{"ax", "ay", "az", "bx", "by", "bz"};
+  for (int i = 0; i < 6; ++i) {
+    for (int k = i; k < 6; ++k) text += fmt::format(",{}_{}_m2", names[i], names[k]);
+  }
+  text += '\n';
+  for (std::size_t s = 0; s < of_lines.size(); ++s) {
+    const JoinedLine& line = joined.lines[of_lines[s]];
+    text += fmt::format("{},{},{},{:.4g}", s, line.views, line.sightings.size(), line.chi2);
+    for (const Eigen::Vector3d* end : {&line.a_m, &line.b_m}) {
+      for (int k = 0; k < 3; ++k) text += fmt::format(",{:.6f}", (*end)[k]);
+    }
+    for (int i = 0; i < 6; ++i) {
+      for (int k = i; k < 6; ++k) text += fmt::format(",{:.6g}", line.covariance_m2(i, k));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// The share of the sightings whose middle the world's surfaces hide from the view that had it.
+double hidden_share(const World& world,
+                    const JoinedLines& joined,
+                    const BuiltWorld& built,
+                    const SeenViews& seen) {
+  const Visibility visibility(world);
+  std::size_t hidden = 0, all = 0;
+  for (const int i : built.of_lines) {
+    const JoinedLine& line = joined.lines[i];
+    const double length_m = (line.b_m - line.a_m).norm();
+    for (const LineSighting& s : line.sightings) {
+      const double middle = 0.5 * (std::max(0.0, s.low_m) + std::min(length_m, s.high_m));
+      const Eigen::Vector3d at = line.a_m + middle / length_m * (line.b_m - line.a_m);
+      hidden += visibility.sees(seen.T_floor_camera[s.view].t, at) ? 0 : 1;
+      ++all;
+    }
+  }
+  return all > 0 ? static_cast<double>(hidden) / static_cast<double>(all) : 0;
+}
+
+void check(const BuildArguments& options, const CLI::App& verb) {
+  if (options.segments.empty() == options.features.empty()) {
+    throw Error("world build", "needs --segments or --features, one of both",
+                "give what vernier lines --segments wrote, or views of known pose");
+  }
+  constexpr std::array of_segments{"--poses", "--up", "--height-m", "--depth"};
+  if (options.segments.empty())
+    refuse_options(verb, of_segments, "--features has poses of its own");
+  if (!options.segments.empty() && options.at.poses.empty()) {
+    throw Error("--segments " + options.segments, "is given without --poses",
+                "say where the camera was");
+  }
+  up_axis(options.at.up);
+  constexpr std::array of_depth{"--depth-unit-m", "--max-depth-m", "--recede-m"};
+  if (options.depth.empty()) refuse_options(verb, of_depth, "no depth maps are given, --depth");
+  if (!options.depth.empty() && options.rig.empty()) {
+    throw Error("--depth " + options.depth, "is given without --rig", "give its pinhole camera");
+  }
+  if (options.depth.empty() && !options.segments.empty() && !options.rig.empty()) {
+    throw Error("--rig " + options.rig, "has no effect without --depth", "leave it out");
+  }
+}
+
+void check_outputs(const BuildArguments& options, const std::vector<std::filesystem::path>& maps) {
+  std::vector<std::filesystem::path> inputs(maps);
+  for (const std::string* input : {&options.segments, &options.features, &options.at.poses}) {
+    if (!input->empty()) inputs.emplace_back(*input);
+  }
+  if (!options.rig.empty()) {
+    for (auto& file : files_of_named_rig(options.rig)) inputs.push_back(std::move(file));
+  }
+  for (const std::string* output : {&options.output, &options.lines, &options.plan}) {
+    if (!output->empty()) check_output_is_not_input(inputs, *output);
+  }
+}
+
+void report(const BuildArguments& options,
+            const SeenViews& seen,
+            const BuiltWorld& built,
+            const World& world,
+            double hidden,
+            Session& session) {
+  const BuiltWorldReport& r = built.report;
+  constexpr double most_off_m = 0.05, most_hidden = 0.2;
+  if (hidden > most_hidden) {
+    session.add_trust_warning(
+        fmt::format("surfaces hide {:.0f} % of what the views saw: check that depth maps belong to "
+                    "the images, and --depth-unit-m",
+                    100 * hidden));
+  }
+  if (r.floor_m && std::abs(*r.floor_m) > most_off_m) {
+    session.add_trust_warning(
+        fmt::format("the depth maps show the floor at a height of {:.2f} m, not 0: give --height-m "
+                    "{:.2f}",
+                    *r.floor_m, options.at.height_m - *r.floor_m));
+  }
+  if (r.lines == 0) {
+    session.add_trust_warning(fmt::format("no line was seen by {} views: check the poses, and --up",
+                                          options.how.min_sightings));
+  }
+  const double route_m = route_length_m(world.route);
+  Json json{{"file", options.output},
+            {"views", seen.views.size()},
+            {"segments", seen.segments},
+            {"joined", r.joined},
+            {"lines", r.lines},
+            {"surfaces", r.surfaces},
+            {"surfaces_on_the_way", r.on_the_way},
+            {"hidden_share", hidden},
+            {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
+            {"route_m", route_m},
+            {"doubts", session.trust_warnings()}};
+  session.result(json, fmt::format("{} views, {} segments: {} lines joined, {} of them seen by {} "
+                                   "views at least\n{} surfaces ({} more left out where the "
+                                   "cameras passed), which hide {:.1f} % of what the views saw; "
+                                   "route of {:.1f} m\nwritten to {}\n",
+                                   seen.views.size(), seen.segments, r.joined, r.lines,
+                                   options.how.min_sightings, r.surfaces, r.on_the_way,
+                                   100 * hidden, route_m, options.output));
+}
+
+void run(const BuildArguments& options, const CLI::App& verb, Session& session) {
+  check(options, verb);
+  std::vector<std::filesystem::path> maps;
+  if (!options.depth.empty()) maps = matching_files(options.depth);
+  check_outputs(options, maps);
+  const SeenViews seen =
+      options.features.empty() ? seen_in_segments(options) : seen_in_features(options, session);
+  const std::vector<Patch> patches =
+      maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen.T_floor_camera, session);
+  const std::string& source = options.features.empty() ? options.segments : options.features;
+  const JoinedLines joined =
+      with_errors_of(source, [&] { return join_lines(seen.views, options.join); });
+  BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, options.how);
+  built.world.name =
+      options.name.empty() ? std::filesystem::path(source).stem().string() : options.name;
+  const World world = build_world(built.world);
+  if (world.surfaces.empty()) {
+    session.warn(options.output + ": has no surfaces; without them nothing hides anything");
+  }
+  const double hidden = hidden_share(world, joined, built, seen);
+  OutputFiles outputs;
+  outputs.add(options.output, format_world(built.world));
+  if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built.of_lines));
+  if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
+  outputs.commit();
+  report(options, seen, built, world, hidden, session);
+}
+
+}  // namespace
+
+void add_world_build(CLI::App& world, Session& session) {
+  auto o = std::make_shared<BuildArguments>();
+  CLI::App* verb = add_verb(world, session, "build",
+                            "build a world from real views: their lines joined, and surfaces",
+                            "vernier world build --segments walk.segments.jsonl --poses poses.csv "
+                            "--up y --height-m 1.6 \\\n      --depth 'depth/*.png' --rig K.txt -o "
+                            "walk.world.toml --lines walk.lines.csv");
+  verb->add_option("--segments", o->segments, "segments in space, as vernier lines writes them");
+  verb->add_option("--features", o->features, "views of known pose, instead; lines only");
+  verb->add_option("--poses", o->at.poses,
+                   "where the camera was: TUM, KITTI, matrices by image, or a COLMAP model");
+  verb->add_option("--up", o->at.up, "axis of the poses' world that points up: x, y, z, -x, -y, -z")
+      ->capture_default_str();
+  verb->add_option("--height-m", o->at.height_m, "of the poses' origin above the floor, metres")
+      ->check(CLI::Range(-1000.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option("--depth", o->depth,
+                   "depth maps of the same images, PNG of 16 bits (quoted pattern), for surfaces");
+  verb->add_option("--rig", o->rig, "their pinhole camera; with --features: of views of segments");
+  verb->add_option("--depth-unit-m", o->depth_unit_m, "unit of the depth maps, metres")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  verb->add_option("--max-depth-m", o->cloud.max_depth_m, "farther depths make no surfaces")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  verb->add_option(
+          "--recede-m", o->how.recede_m,
+          "how far surfaces stand back from the cameras, so that their noise hides no line")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--min-sightings", o->how.min_sightings, "views that must have seen a line")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--max-sigma-m", o->join.max_sigma_m, "segments that err more are not joined")
+      ->check(CLI::Range(1e-4, 10.0))
+      ->capture_default_str();
+  verb->add_option("--pose-sigma-m", o->join.view_position_m, "error of each view's position")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb->add_option("--pose-sigma-rad", o->join.view_turn_rad, "error of each view's rotation")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--shared-m", o->join.shared_m,
+                   "error that all sightings of a line may share; it does not average away")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb->add_option("--lines", o->lines, "CSV of the lines: sightings and covariance of both ends");
+  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
+  verb->add_option("--name", o->name, "name of the world");
+  verb->add_option("-o,--output", o->output, "world file")->required();
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
+}
+
+}  // namespace vernier::cli

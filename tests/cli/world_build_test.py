@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier world build as a user calls it, and what the other verbs make of its world.
+
+    world_build_test.py PROGRAM [unittest's options]
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+from lines_test import BOXES, WALL_M, write_walk
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+DATA = os.environ.get('VERNIER_DATA', '')
+BUILD = ['world', 'build', '--segments', 'seen.jsonl', '--poses', 'poses.csv', '--height-m', '1']
+
+
+class WorldBuild(verb_calls.ProgramCase):
+    program = PROGRAM
+
+    def setUp(self):
+        super().setUp()
+        write_walk(self.folder, steps=5)
+        self.done('lines', '--image', 'walk*.pgm', '--depth', 'far*.png', '--rig', 'K.txt', '--poses',
+                  'poses.csv', '--height-m', '1', '-o', 'walk.jsonl', '--segments', 'seen.jsonl')
+
+    def done(self, *words, code=0):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, code, run.stderr)
+        return run.stdout
+
+    def refused(self, *words, says):
+        run = self.run_program(*words, '-o', 'out.toml')
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+        self.assertIn(says, run.stderr)
+        self.assertFalse((self.folder / 'out.toml').exists())
+
+    def lines(self):
+        with open(self.folder / 'lines.csv', newline='') as text:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(text)]
+
+    def test_edges_of_the_boxes_are_joined_and_surfaces_stand_behind_them(self):
+        found = json.loads(self.done(*BUILD, '--depth', 'far*.png', '--rig', 'K.txt', '-o', 'b.toml',
+                                     '--lines', 'lines.csv', '--plan', 'b.svg', '--json'))
+        self.assertEqual(found['views'], 5)
+        self.assertGreater(found['surfaces'], 3)
+        self.assertGreater(found['joined'], found['lines'] - 1)
+        self.assertLess(found['hidden_share'], 0.1)
+        rows = self.lines()
+        self.assertEqual(len(rows), found['lines'])
+        upright = [row for row in rows if abs(row['a_z_m'] - row['b_z_m']) > 0.5]
+        edges = [(ahead, side) for ahead, *sides in BOXES for side in sides]
+        for row in upright:
+            off = min(math.hypot(row['a_x_m'] - x, row['a_y_m'] - y) for x, y in edges)
+            self.assertLess(off, 0.06, row)
+        near = [e for e in edges if any(math.hypot(row['a_x_m'] - e[0], row['a_y_m'] - e[1]) < 0.06
+                                        for row in upright)]
+        self.assertGreaterEqual(len(near), 4)  # others are hidden, or leave the image
+        for row in rows:
+            self.assertGreaterEqual(row['views'], 2)
+            self.assertGreaterEqual(row['ax_ax_m2'], 0.01 ** 2)  # what all sightings share
+        info = json.loads(self.done('world', 'info', 'b.toml', '--poses', '0', '--json'))
+        self.assertEqual(info['segments'], found['lines'])
+        self.assertAlmostEqual(info['route_m'], 4 * math.hypot(0.2, 0.05), delta=0.02)
+        seen = json.loads(self.done('simulate', '--world', 'b.toml', '--pose', '0.4,0.1,0', '--height-m',
+                                    '1', '--source', 'none', '--json'))
+        self.assertGreater(len(seen['space']['a_m']), 3)
+        self.done('world', 'export', 'b.toml', '-o', 'b.ply')
+        # the same again gives the same bytes
+        before = (self.folder / 'b.toml').read_bytes(), (self.folder / 'lines.csv').read_bytes()
+        self.done(*BUILD, '--depth', 'far*.png', '--rig', 'K.txt', '-o', 'b.toml', '--lines', 'lines.csv')
+        self.assertEqual(before, ((self.folder / 'b.toml').read_bytes(),
+                                  (self.folder / 'lines.csv').read_bytes()))
+
+    def test_a_study_runs_in_it(self):
+        self.done(*BUILD, '--depth', 'far*.png', '--rig', 'K.txt', '-o', 'b.toml')
+        (self.folder / 'built.toml').write_text(
+            '[study]\ntrials = 2\nprotocol = "near_path"\n[world]\nfile = "b.toml"\n'
+            '[camera]\nheight_m = 1\n[map]\nspacing_m = 0.2\n')
+        run = self.run_program('study', 'built.toml', '-o', 'studied', '--threads', '1')
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+
+    def test_views_of_lines_do_without_depth(self):
+        found = json.loads(self.done('world', 'build', '--features', 'walk.jsonl', '-o', 'f.toml',
+                                     '--lines', 'lines.csv', '--json'))
+        self.assertEqual(found['surfaces'], 0)
+        self.assertGreaterEqual(found['lines'], 4)
+        few = json.loads(self.done('world', 'build', '--features', 'walk.jsonl', '--min-sightings', '5',
+                                   '-o', 'f.toml', '--json'))
+        self.assertLess(few['lines'], found['lines'])
+
+    def test_what_no_view_saw_again_is_a_doubt(self):
+        run = self.run_program(*BUILD, '--min-sightings', '6', '-o', 'b.toml')
+        self.assertEqual(run.returncode, 3)
+        self.assertIn('no line was seen by 6 views', run.stderr)
+
+    def test_a_floor_elsewhere_is_a_doubt(self):
+        self.done('lines', '--image', 'left.pgm', '--depth', 'depth.png', '--rig', 'rig.json', '-o',
+                  'one.jsonl')  # the inputs of all verbs are at hand
+        poses = (self.folder / 'poses.csv').read_text()
+        down = poses.replace('0,0,1,', '0,-0.6,0.8,').replace('0,-1,0,0,0,0,0,1', '0,-0.8,-0.6,0,0,0,0,1')
+        (self.folder / 'down.csv').write_text(down)
+        rows = [[min(1.3 / max((v - 60) / 150 * 0.8 + 0.6, 1e-3), 4.9) for _ in range(160)]
+                for v in range(120)]
+        for i in range(5):
+            (self.folder / f'floor{i}.png').write_bytes(
+                verb_calls.png16([[round(1000 * z) for z in row] for row in rows]))
+        run = self.run_program('world', 'build', '--segments', 'seen.jsonl', '--poses', 'down.csv',
+                               '--height-m', '1', '--depth', 'floor*.png', '--rig', 'K.txt', '-o', 'b.toml')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('give --height-m 1.3', run.stderr)
+
+    def test_bad_input_is_refused(self):
+        self.refused(*BUILD[:4], says='without --poses')
+        self.refused('world', 'build', says='--segments or --features')
+        self.refused(*BUILD, '--features', 'walk.jsonl', says='one of both')
+        self.refused(*BUILD, '--depth', 'far*.png', says='without --rig')
+        self.refused(*BUILD, '--rig', 'K.txt', says='no effect')
+        self.refused(*BUILD, '--recede-m', '0.1', says='no depth maps')
+        self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt', says='matches 2 maps')
+        self.refused(*BUILD, '--up', 'w', says='--up')
+        self.refused('world', 'build', '--features', 'walk.jsonl', '--height-m', '2', says='its own')
+        (self.folder / 'seen.jsonl').write_text('{"image": "walk0.pgm", "segments": [{}]}\n')
+        self.refused(*BUILD, says='seen.jsonl:1')
+        (self.folder / 'seen.jsonl').write_text('')
+        self.refused(*BUILD, says='seen.jsonl')
+
+    @unittest.skipUnless(DATA, 'VERNIER_DATA does not name the folder of the data sets')
+    def test_the_real_walk(self):
+        walk = pathlib.Path(DATA) / 'sequences' / 'office_walk'
+        if not walk.exists():
+            self.skipTest('no sequences/office_walk')
+        self.done('lines', '--image', f'{walk}/images/0000[0-9].png', '--depth',
+                  f'{walk}/depth/0000[0-9].png', '--rig', walk / 'K.txt', '--poses', walk / 'poses.csv',
+                  '--up', 'y', '--height-m', '1.53', '-o', 'real.jsonl', '--segments', 'real.segments')
+        found = json.loads(self.done(
+            'world', 'build', '--segments', 'real.segments', '--poses', walk / 'poses.csv', '--up', 'y',
+            '--height-m', '1.53', '--depth', f'{walk}/depth/0000[0-9].png', '--rig', walk / 'K.txt',
+            '-o', 'b.toml', '--json'))
+        self.assertEqual(found['views'], 3)
+        self.assertGreater(found['lines'], 150)
+        self.assertGreater(found['surfaces'], 50)
+        self.assertLess(found['hidden_share'], 0.1)
+
+
+if __name__ == '__main__':
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -52,7 +52,7 @@ class Views:
             sys.exit('halves_peers.py: the rig is not a stereo pair of opencv4 cameras')
         self.size = tuple(rig['cameras'][0]['size_px'])
         self.target = np.array(rig['evidence']['board']['points_m'])
-        self.columns = 1 + int(np.argmax(self.target[:, 1] > 1e-9)) - 1
+        self.columns = int(np.argmax(self.target[:, 1] > 1e-9))
         self.spacing = self.target[1, 0]
         seen = {}
         for view in rig['evidence']['observations']:

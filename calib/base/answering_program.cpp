@@ -50,7 +50,6 @@ AnsweringProgram::AnsweringProgram(std::vector<std::string> words,
                                    double time_limit_s)
     : words_(std::move(words)), start_(std::move(start)), time_limit_s_(time_limit_s) {
   this->start();
-  untold_ = !program_;
 }
 
 /// Starts the program and tells it what there is; without program_ afterwards it did not get ready,
@@ -72,9 +71,8 @@ void AnsweringProgram::start() {
 bool AnsweringProgram::ask(const std::function<std::string()>& question,
                            const std::function<void(std::string_view)>& take) {
   if (failures_ >= most_failures) return false;
+  if (!program_ && failures_ > 0) start();  // that the first start failed is told here
   ++failures_;
-  if (!program_ && !untold_) start();
-  untold_ = false;
   if (!program_) return false;
   std::string line;
   const Outcome outcome = program_->ask(question(), time_limit_s_, line);

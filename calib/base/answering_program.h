@@ -47,7 +47,6 @@ class AnsweringProgram {
   std::unique_ptr<ProgramConversation> program_;
   int failures_ = 0;  // one after the other
   std::string failure_;
-  bool untold_ = false;  // that of the first start, which the first question tells
 };
 
 }  // namespace vernier::internal

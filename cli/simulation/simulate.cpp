@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstddef>
@@ -53,7 +55,15 @@ struct SimulateArguments {
   SimulatedViewOptions views;
 };
 
+/// A camera stands above the floor; the origin of a file of poses may lie anywhere.
+void check_height(const SimulateArguments& options) {
+  const std::string text = fmt::format("{:g}", options.height_m);
+  const std::string fault = options.pose.empty() ? finite(text) : finite_and_positive(text);
+  if (!fault.empty()) throw Error("--height-m", fault, "give the height of the camera");
+}
+
 void check(const SimulateArguments& options, const CLI::App& verb) {
+  check_height(options);
   if (options.pose.empty() == options.views.at.poses.empty()) {
     throw Error("simulate", "needs --pose or --poses, one of both",
                 "give one pose to look from, or a file of poses");
@@ -67,9 +77,6 @@ void check(const SimulateArguments& options, const CLI::App& verb) {
                   "name the file of views to write");
     }
   } else {
-    if (!(options.height_m > 0)) {
-      throw Error("--height-m", "is not above 0", "give the height of the camera");
-    }
     constexpr std::array of_views{"--features", "--segments", "--up", "--depth-sigma-per-m2"};
     refuse_options(verb, of_views, "no file of poses is given, --poses");
   }
@@ -205,7 +212,6 @@ void add_simulate(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--height-m", o->height_m,
                    "camera height, metres; with --poses: of their origin")
-      ->check(finite)
       ->capture_default_str();
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(finite)

@@ -94,6 +94,24 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
   }
 }
 
+/// Held-out boards are measured against the target as it was made.
+void refuse_shape(const CheckArguments& options, const CalibrationOptions& how) {
+  if (options.holdout && how.board_shape) {
+    throw Error("--holdout", "compares lengths with the target as it was made, without its shape",
+                "leave out --board-shape, or give --halves");
+  }
+}
+
+/// Said where only two of the cameras of a rig are compared.
+void tell_of_first_pair(const CheckArguments& options, const Solved& solved, Session& session) {
+  const std::vector<Camera>& cameras = solved.estimate.rig.cameras;
+  if (cameras.size() < 3 || (!options.holdout && options.injected.empty())) return;
+  session.warn(
+      fmt::format("lengths on the boards are measured by the first two of {} cameras, {} "
+                  "and {}",
+                  cameras.size(), cameras[0].name, cameras[1].name));
+}
+
 /// Halves that share a prior cannot show how far they are apart.
 void refuse_prior(const CheckArguments& options, const CalibrationOptions& how) {
   if (options.halves && (how.prior || !how.known.empty())) {
@@ -116,6 +134,11 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   for (const std::string& warning : file.warnings) {
     const bool stored_warning = warning.starts_with(stored_warning_prefix(path.string()));
     stored_warning ? session.add_trust_warning(warning) : session.warn(warning);
+  }
+  if (file.estimate.calibration && file.estimate.calibration->effects) {
+    throw Error(options.rig,
+                "is a calibration with the board's shape or motion, whose file holds no corners",
+                "give the corners instead, with --board-shape and --motion as it had");
   }
   if (!file.estimate.evidence || !file.estimate.calibration) {
     throw Error(options.rig, "the file has no stored evidence to solve again",
@@ -144,6 +167,7 @@ Solved solve(const CheckArguments& options, Session& session) {
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   refuse_prior(options, solved.how);
+  refuse_shape(options, solved.how);
   BoardObservations observations = load(options.board, session);
   check_splits(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
@@ -173,6 +197,7 @@ CheckedProblem problem_to_check(const Solved& solved) {
 
 void run(const CheckArguments& options, Session& session) {
   const Solved solved = solve(options, session);
+  tell_of_first_pair(options, solved, session);
   const CheckedProblem problem = problem_to_check(solved);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
             {"cameras", problem.state.rig.cameras.size()},

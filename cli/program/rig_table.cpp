@@ -48,6 +48,18 @@ std::optional<Eigen::Vector2d> estimated_warp_m(const RigEstimate& estimate) {
   return estimate.evidence->warp_m;
 }
 
+/// How well the data are fitted; nothing of priors alone.
+std::string fit_line(const CalibrationSummary& s) {
+  if (s.views == 0 && s.dof == 0) return "no corners and no pairs, priors alone\n";
+  const std::string views = s.source == "board"   ? "views"
+                            : s.source == "pairs" ? (s.views == 1 ? "image pair" : "image pairs")
+                                                  : "board frames and image pairs";
+  return fmt::format(
+      "{} {}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom{}\n",
+      s.views, views, s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
+      s.pixel_sigma_px, s.chi2, s.dof, s.effects ? " (without random effects)" : "");
+}
+
 std::string parameter_lines(const RigEstimate& estimate) {
   const std::vector<std::string> names = parameter_names(estimate.rig);
   const Eigen::VectorXd values = parameters(estimate.rig);
@@ -83,14 +95,7 @@ std::string rig_table(const RigEstimate& estimate) {
   std::string text;
   if (estimate.calibration) {
     const CalibrationSummary& s = *estimate.calibration;
-    text += fmt::format(
-        "{} {}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom\n",
-        s.views,
-        s.source == "board"   ? "views"
-        : s.source == "pairs" ? (s.views == 1 ? "image pair" : "image pairs")
-                              : "board frames and image pairs",
-        s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
-        s.pixel_sigma_px, s.chi2, s.dof);
+    text += fit_line(s);
     if (s.prior_dof > 0) {
       text +=
           fmt::format("prior: chi² {:.2f} for {} parameters with prior (p at most {:.2g})\n",

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "calib/board_observations.h"
@@ -47,6 +49,30 @@ class CalibratedRigs : public ToldRigs {
   std::shared_ptr<const FreshCalibrations> calibrations_;
   double psi_c_;
 };
+
+/// The depth that a calibration measures of a point, and its variance as the calibration states it.
+struct MeasuredDepth {
+  double m = 0, variance_m2 = 0;
+};
+
+/// Nothing if the rays of the point do not meet in front of the rig, or if the rig that was found
+/// does not see it.
+std::optional<MeasuredDepth> measured_depth(const FreshCalibration& calibration,
+                                            const PixelPair& pair,
+                                            double range_m) {
+  const std::optional<double> depth_m = try_triangulated_depth_m(calibration.rig, pair);
+  if (!depth_m) return {};
+  try {
+    const Eigen::RowVectorXd g = target_quantity(calibration.rig, "depth", range_m).gradient.row(0);
+    return MeasuredDepth{*depth_m, g.dot(calibration.covariance * g.transpose())};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+std::string no_depth_reason(double range_m) {
+  return fmt::format("the depth of a point at {:g} m is not found with it", range_m);
+}
 
 }  // namespace
 
@@ -176,12 +202,15 @@ CalibrationRecord record_of(
       if (record.failed++ == 0) record.why_failed = c->failure;
       continue;
     }
-    if (!c->doubt.empty() && record.doubtful++ == 0) record.why_doubtful = c->doubt;
-    const std::optional<double> depth_m = pair ? try_triangulated_depth_m(c->rig, *pair) : nan;
-    if (!depth_m || !pair) continue;
-    const Eigen::RowVectorXd g = target_quantity(c->rig, "depth", record.range_m).gradient.row(0);
-    errors += (*depth_m - record.range_m) * (*depth_m - record.range_m);
-    variances += g * c->covariance * g.transpose();
+    const std::optional<MeasuredDepth> depth =
+        pair ? measured_depth(*c, *pair, record.range_m) : std::nullopt;
+    const bool no_depth = pair && !depth;
+    if ((!c->doubt.empty() || no_depth) && record.doubtful++ == 0) {
+      record.why_doubtful = c->doubt.empty() ? no_depth_reason(record.range_m) : c->doubt;
+    }
+    if (!depth) continue;
+    errors += (depth->m - record.range_m) * (depth->m - record.range_m);
+    variances += depth->variance_m2;
     ++measured;
   }
   record.depth_error_m = measured > 0 ? std::sqrt(errors / measured) : nan;

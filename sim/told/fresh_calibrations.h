@@ -91,8 +91,8 @@ struct CalibrationRecord {
   int failed = 0, doubtful = 0;
   std::string why_failed, why_doubtful;  ///< the first one's reason
   /// Of the depth of a point on the left axis at `range_m`, over those that did not fail: root mean
-  /// square of the error against the truth, and of the standard deviation that each stated. Not a
-  /// number if all failed or the rig is no pair.
+  /// square of the error against the truth, and of the standard deviation that each stated; those
+  /// by which it has no depth are doubtful and left out. Not a number if none has one.
   double range_m = 5;
   double depth_error_m = 0, depth_sd_m = 0;
 };

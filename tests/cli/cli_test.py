@@ -138,6 +138,19 @@ class RealPairs(Case):
             self.assertEqual(rig['calibration'][key], usual['calibration'][key]
                              if 'calibration' in usual else usual[key])
         self.works('sample', self.folder / 'rig.json', '-n', '2', '-o', self.folder / 's.csv')
+        self.complains('check', self.folder / 'rig.json', '--no-mrcal', of="board's shape or motion, "
+                       'whose file holds no corners; give the corners instead')
+        self.complains('combine', self.folder / 'rig.json', '-o', self.folder / 'no.json',
+                       of='holds no corners and no pairs: there is nothing to combine')
+        self.complains('check', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                       IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
+                       '--board-shape', '--holdout', '--no-mrcal',
+                       of='--holdout: compares lengths with the target as it was made')
+        self.assertFalse((self.folder / 'no.json').exists())
+        self.assertIn('(without random effects)', self.works(
+            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
+            '--board', '9x6', '--square-m', '0.025', '--no-model-check', '--motion', '-o',
+            self.folder / 'motion.json').stdout)
         self.assertIn('the board is uneven', self.works(
             'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
             '--board', '9x6', '--square-m', '0.025', '--no-model-check', '--board-shape', '-o',
@@ -311,14 +324,14 @@ class RealPairs(Case):
         self.assertEqual(view['ids'], [0] + list(range(2, 54)))
 
 
-def board_lines(frames=12, tilts=True):
-    """observations.csv of a pinhole pair and a 9x6 board, with noise of 0.2 px, as lines."""
+def board_lines(frames=12, tilts=True, cameras=2):
+    """observations.csv of pinhole cameras and a 9x6 board, with noise of 0.2 px, as lines."""
     chance = random.Random(5)
     lines = ['frame,camera,row,col,X,Y,Z,qx,qy']
     for frame in range(frames):
         a, b = (0.5 * math.sin(2.1 * frame), 0.5 * math.cos(1.7 * frame)) if tilts else (0, 0)
         at = 0.12 * math.sin(frame), 0.08 * math.cos(3 * frame), 0.6 + 0.02 * frame
-        for camera in range(2):
+        for camera in range(cameras):
             for row in range(6):
                 for col in range(9):
                     X, Y = 0.025 * col, 0.025 * row
@@ -347,6 +360,12 @@ class BadBoards(Case):
 
     def refuses(self, change, of, **more):
         self.complains(*self.changed(change, **more), of=of, leaves=[self.folder / 'rig.json'])
+
+    def test_lengths_of_more_than_two_cameras(self):
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines(cameras=3)))
+        done = self.works('check', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                          '--no-mrcal', '--trials', '20', '--inject', '1')
+        self.assertIn('are measured by the first two of 3 cameras, left and right', done.stderr)
 
     def test_good_corners_are_taken(self):
         done = self.works(*self.changed(lambda f, c, r, k, rest: [f, c, r, k, *rest]))

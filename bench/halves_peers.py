@@ -17,6 +17,9 @@ calibrates both, all with the same model and the same corners:
   mrcal, no prior    the same without regularisation
   opencv             calibrateCamera for each eye, then stereoCalibrate from there, everything free
 
+Vernier and OpenCV begin from nothing, mrcal at RIG.json and its boards' poses. Halves that Vernier doubts
+count, and are told.
+
 The difference of a parameter is measured in standard deviations that RIG.json states for it. Prints the root
 mean square over splits and parameters, also of intrinsics and of the other camera's pose alone, and each
 divided by Vernier's. Halves say how much what is estimated scatters; an error that all views share is not
@@ -24,6 +27,7 @@ seen, nor the bias of a prior that both halves have. mrcal and OpenCV 4.6 run in
 (python3-mrcal, python3-opencv).
 """
 import argparse
+import collections
 import csv
 import json
 import pathlib
@@ -62,6 +66,7 @@ class Views:
         self.pixels = {f: np.array([v[0], v[1]]) for f, v in seen.items() if len(v) == 2}
         self.poses = {pose['frame']: pose['rotation_rad'] + pose['translation_m']
                       for pose in rig['evidence']['view_poses']}
+        self.frames = len(self.poses)
         self.start = rig['parameters']
 
     def write(self, file, frames):
@@ -86,6 +91,9 @@ def to_opencv(parameters):
     return np.array(eyes), np.array(parameters[16:19]), np.array(parameters[19:22])
 
 
+doubted = collections.Counter()  # halves that Vernier ends with exit code 3, by its options
+
+
 def by_vernier(program, views, frames, folder, options):
     views.write(folder / 'half.csv', frames)
     done = subprocess.run([program, 'calibrate', '--observations', 'half.csv', '--size',
@@ -93,6 +101,7 @@ def by_vernier(program, views, frames, folder, options):
                            '-q', *options], cwd=folder, capture_output=True, text=True)
     if done.returncode not in (0, 3):
         raise RuntimeError(done.stderr.strip())
+    doubted[' '.join(options)] += done.returncode == 3
     return np.array(json.loads((folder / 'half.json').read_text())['parameters'])
 
 
@@ -145,6 +154,8 @@ def main():
     rig = json.loads(options.rig.read_text())
     views = Views(rig)
     sigma = np.sqrt(np.diag(np.array(rig['covariance']['matrix'])))
+    if not sigma.all():
+        sys.exit('halves_peers.py: the rig holds parameters fixed, which has no scale')
     frames = sorted(views.pixels)
     deal = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as name:
@@ -166,7 +177,11 @@ def main():
     rms = {tool: [np.sqrt(np.mean(np.array(values)[:, part] ** 2)) for part in
                   (slice(None), slice(INTRINSICS), slice(INTRINSICS, None))]
            for tool, values in z.items()}
-    print(f'{len(frames)} frames seen whole by both eyes, {options.splits} splits\n')
+    print(f'{len(frames)} of {views.frames} frames are seen whole by both eyes, {options.splits} splits')
+    for words, count in doubted.items():
+        if count:
+            print(f'vernier {words}: {count} of {2 * options.splits} halves are doubtful, counted as all')
+    print()
     print('| tool | all | lenses | pose | ÷ vernier: all | lenses | pose |')
     print('| --- | --- | --- | --- | --- | --- | --- |')
     for tool, values in rms.items():

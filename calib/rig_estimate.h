@@ -46,8 +46,8 @@ struct CalibrationEffects {
   std::vector<Eigen::Vector3d> shape_m;  ///< found, one per point of the target; empty without
 };
 
-/// Summary of a calibration. Residuals and their sums are those of the usual minimum, without random
-/// effects.
+/// Summary of a calibration. Residuals and their sums are those of the usual minimum, without
+/// random effects.
 struct CalibrationSummary {
   std::string source = "board";  ///< board, pairs or combined
   double pixel_sigma_px = 0;     ///< standard deviation of a pixel coordinate

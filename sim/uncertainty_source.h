@@ -68,13 +68,13 @@ class UncertaintySource {
   virtual void apply(const SensingContext& context, SensedView& view) const = 0;
 };
 
-/// The sources enabled by these settings, in order: unseen edges, clutter, lateral shift, merging
-/// of lines, edge loss, end-point error, epipolar rejection, stereo mismatch, corner loss, corner
-/// error, corner mismatch, then those of one's own (SourceSettings::own, in their order) and the
-/// program. The memo's seventh source, calibration, acts on the rig assumed by the estimator
-/// (RigSampler), the mount on the pose of a look (draw_mount), and moved furniture on the world
-/// (with_moved_furniture). `rig` is what the program is told. Throws Error for an own source that
-/// is not registered, and a program that cannot be started.
+/// The sources enabled by these settings, in order: unseen edges, missed edges, clutter, lateral
+/// shift, merging of lines, edge loss, end-point error, epipolar rejection, stereo mismatch, corner
+/// loss, corner error, corner mismatch, then those of one's own (SourceSettings::own, in their
+/// order) and the program. The memo's seventh source, calibration, acts on the rig assumed by the
+/// estimator (RigSampler), the mount on the pose of a look (draw_mount), and moved furniture on the
+/// world (with_moved_furniture). `rig` is what the program is told. Throws Error for an own source
+/// that is not registered, and a program that cannot be started.
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px,
                                                                  const Rig& rig);

@@ -27,6 +27,7 @@ int pose_index(const Rig& rig, int camera) {
 }
 
 int parameter_count(const Rig& rig) {
+  if (rig.cameras.empty()) return 0;
   return pose_index(rig, static_cast<int>(rig.cameras.size()));
 }
 

@@ -102,16 +102,6 @@ void refuse_shape(const CheckArguments& options, const CalibrationOptions& how) 
   }
 }
 
-/// Said where only two of the cameras of a rig are compared.
-void tell_of_first_pair(const CheckArguments& options, const Solved& solved, Session& session) {
-  const std::vector<Camera>& cameras = solved.estimate.rig.cameras;
-  if (cameras.size() < 3 || (!options.holdout && options.injected.empty())) return;
-  session.warn(
-      fmt::format("lengths on the boards are measured by the first two of {} cameras, {} "
-                  "and {}",
-                  cameras.size(), cameras[0].name, cameras[1].name));
-}
-
 /// Halves that share a prior cannot show how far they are apart.
 void refuse_prior(const CheckArguments& options, const CalibrationOptions& how) {
   if (options.halves && (how.prior || !how.known.empty())) {
@@ -126,6 +116,16 @@ struct Solved {
   RigEstimate estimate;
   std::optional<RigEstimate> from_file;  ///< the estimate stored in the rig file
 };
+
+/// Said where only two of the cameras of a rig are compared.
+void tell_of_first_pair(const CheckArguments& options, const Solved& solved, Session& session) {
+  const std::vector<Camera>& cameras = solved.estimate.rig.cameras;
+  if (cameras.size() < 3 || (!options.holdout && options.injected.empty())) return;
+  session.warn(
+      fmt::format("lengths on the boards are measured by the first two of {} cameras, {} "
+                  "and {}",
+                  cameras.size(), cameras[0].name, cameras[1].name));
+}
 
 /// Solves the calibration of a rig file again from the stored corners.
 Solved solve_again(const CheckArguments& options, Session& session) {

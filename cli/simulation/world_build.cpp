@@ -26,13 +26,10 @@
 #include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/simulation/build_input.h"
 #include "cli/simulation/floor_poses.h"
 #include "cli/simulation/plan_picture.h"
-#include "localise/join/place_segments.h"
 #include "localise/joined_lines.h"
-#include "localise/place.h"
-#include "localise/view_file.h"
-#include "localise/views/segments_file.h"
 #include "sim/built/built_world.h"
 #include "sim/built/depth_cloud.h"
 #include "sim/built/planar_patches.h"
@@ -45,61 +42,13 @@ namespace vernier::cli {
 namespace {
 
 struct BuildArguments {
-  std::string segments, features, depth, rig, output, lines, plan, name;
-  FloorPoseOptions at;
+  BuildInput input;
+  std::string depth, output, lines, plan, name;
   double depth_unit_m = 0.001;
   JoinOptions join;
   DepthCloudOptions cloud;
   BuiltWorldOptions how;
 };
-
-/// What was seen, in the frame of the floor.
-struct SeenViews {
-  std::vector<SegmentsOfView> views;
-  std::vector<Pose> T_floor_camera;
-  std::size_t segments = 0;
-};
-
-SeenViews seen_in_segments(const BuildArguments& options) {
-  const std::vector<SegmentsOfImage> images = read_segments(options.segments);
-  std::vector<std::filesystem::path> names;
-  for (const SegmentsOfImage& image : images) names.emplace_back(image.image);
-  SeenViews seen;
-  const std::vector<FloorPose> at = floor_poses(options.at, names);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    SegmentsOfView view{at[i].T_floor_camera, {}};
-    for (const ImageSegmentInSpace& s : images[i].segments) {
-      if (s.reliable) view.segments.push_back(s.in_space);
-    }
-    seen.segments += view.segments.size();
-    seen.T_floor_camera.push_back(view.T_world_camera);
-    seen.views.push_back(std::move(view));
-  }
-  return seen;
-}
-
-SeenViews seen_in_features(const BuildArguments& options, Session& session) {
-  const auto rig =
-      options.rig.empty()
-          ? nullptr
-          : std::make_shared<const Rig>(read_named_rig(options.rig, session).estimate.rig);
-  SeenViews seen;
-  const std::vector<RecordedLooks> views = read_views(options.features, rig);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!views[i].pose) {
-      throw Error(fmt::format("{}: view {}", options.features, i + 1), "has no pose",
-                  "give views of known pose");
-    }
-    for (const Look& look : views[i].looks) {
-      const Pose2D pose = compose(*views[i].pose, {0, 0, look.turn_rad});
-      seen.views.push_back(segments_of_place(look.view, pose));
-      seen.segments += seen.views.back().segments.size();
-      const Pose& T_floor_robot = seen.views.back().T_world_camera;
-      seen.T_floor_camera.push_back(T_floor_robot * T_robot_camera(look.view.mount));
-    }
-  }
-  return seen;
-}
 
 /// Surfaces of the depth maps, which belong to the views in order.
 std::vector<Patch> patches_of(const BuildArguments& options,
@@ -112,7 +61,7 @@ std::vector<Patch> patches_of(const BuildArguments& options,
                             T_floor_camera.size()),
                 "give the map of each image, in the same order by name");
   }
-  const ReadRig rig = read_named_rig(options.rig, session, maps.front().string());
+  const ReadRig rig = read_named_rig(options.input.rig, session, maps.front().string());
   DepthCloud cloud(options.cloud);
   Progress progress(session, "depth maps");
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -169,35 +118,36 @@ double hidden_share(const World& world,
 }
 
 void check(const BuildArguments& options, const CLI::App& verb) {
-  if (options.segments.empty() == options.features.empty()) {
+  if (options.input.segments.empty() == options.input.features.empty()) {
     throw Error("world build", "needs --segments or --features, one of both",
                 "give what vernier lines --segments wrote, or views of known pose");
   }
   constexpr std::array of_segments{"--poses", "--up", "--height-m", "--depth"};
-  if (options.segments.empty())
+  if (options.input.segments.empty())
     refuse_options(verb, of_segments, "--features has poses of its own");
-  if (!options.segments.empty() && options.at.poses.empty()) {
-    throw Error("--segments " + options.segments, "is given without --poses",
+  if (!options.input.segments.empty() && options.input.at.poses.empty()) {
+    throw Error("--segments " + options.input.segments, "is given without --poses",
                 "say where the camera was");
   }
-  up_axis(options.at.up);
+  up_axis(options.input.at.up);
   constexpr std::array of_depth{"--depth-unit-m", "--max-depth-m", "--recede-m"};
   if (options.depth.empty()) refuse_options(verb, of_depth, "no depth maps are given, --depth");
-  if (!options.depth.empty() && options.rig.empty()) {
+  if (!options.depth.empty() && options.input.rig.empty()) {
     throw Error("--depth " + options.depth, "is given without --rig", "give its pinhole camera");
   }
-  if (options.depth.empty() && !options.segments.empty() && !options.rig.empty()) {
-    throw Error("--rig " + options.rig, "has no effect without --depth", "leave it out");
+  if (options.depth.empty() && !options.input.segments.empty() && !options.input.rig.empty()) {
+    throw Error("--rig " + options.input.rig, "has no effect without --depth", "leave it out");
   }
 }
 
 void check_outputs(const BuildArguments& options, const std::vector<std::filesystem::path>& maps) {
   std::vector<std::filesystem::path> inputs(maps);
-  for (const std::string* input : {&options.segments, &options.features, &options.at.poses}) {
+  for (const std::string* input :
+       {&options.input.segments, &options.input.features, &options.input.at.poses}) {
     if (!input->empty()) inputs.emplace_back(*input);
   }
-  if (!options.rig.empty()) {
-    for (auto& file : files_of_named_rig(options.rig)) inputs.push_back(std::move(file));
+  if (!options.input.rig.empty()) {
+    for (auto& file : files_of_named_rig(options.input.rig)) inputs.push_back(std::move(file));
   }
   for (const std::string* output : {&options.output, &options.lines, &options.plan}) {
     if (!output->empty()) check_output_is_not_input(inputs, *output);
@@ -222,7 +172,7 @@ void report(const BuildArguments& options,
     session.add_trust_warning(
         fmt::format("the depth maps show the floor at a height of {:.2f} m, not 0: give --height-m "
                     "{:.2f}",
-                    *r.floor_m, options.at.height_m - *r.floor_m));
+                    *r.floor_m, options.input.at.height_m - *r.floor_m));
   }
   if (r.lines == 0) {
     session.add_trust_warning(fmt::format("no line was seen by {} views: check the poses, and --up",
@@ -254,11 +204,11 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
   std::vector<std::filesystem::path> maps;
   if (!options.depth.empty()) maps = matching_files(options.depth);
   check_outputs(options, maps);
-  const SeenViews seen =
-      options.features.empty() ? seen_in_segments(options) : seen_in_features(options, session);
+  const SeenViews seen = seen_views(options.input, session);
   const std::vector<Patch> patches =
       maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen.T_floor_camera, session);
-  const std::string& source = options.features.empty() ? options.segments : options.features;
+  const std::string& source =
+      options.input.features.empty() ? options.input.segments : options.input.features;
   const JoinedLines joined =
       with_errors_of(source, [&] { return join_lines(seen.views, options.join); });
   BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, options.how);
@@ -286,18 +236,22 @@ void add_world_build(CLI::App& world, Session& session) {
                             "vernier world build --segments walk.segments.jsonl --poses poses.csv "
                             "--up y --height-m 1.6 \\\n      --depth 'depth/*.png' --rig K.txt -o "
                             "walk.world.toml --lines walk.lines.csv");
-  verb->add_option("--segments", o->segments, "segments in space, as vernier lines writes them");
-  verb->add_option("--features", o->features, "views of known pose, instead; lines only");
-  verb->add_option("--poses", o->at.poses,
+  verb->add_option("--segments", o->input.segments,
+                   "segments in space, as vernier lines writes them");
+  verb->add_option("--features", o->input.features, "views of known pose, instead; lines only");
+  verb->add_option("--poses", o->input.at.poses,
                    "where the camera was: TUM, KITTI, matrices by image, or a COLMAP model");
-  verb->add_option("--up", o->at.up, "axis of the poses' world that points up: x, y, z, -x, -y, -z")
+  verb->add_option("--up", o->input.at.up,
+                   "axis of the poses' world that points up: x, y, z, -x, -y, -z")
       ->capture_default_str();
-  verb->add_option("--height-m", o->at.height_m, "of the poses' origin above the floor, metres")
+  verb->add_option("--height-m", o->input.at.height_m,
+                   "of the poses' origin above the floor, metres")
       ->check(CLI::Range(-1000.0, 1000.0))
       ->capture_default_str();
   verb->add_option("--depth", o->depth,
                    "depth maps of the same images, PNG of 16 bits (quoted pattern), for surfaces");
-  verb->add_option("--rig", o->rig, "their pinhole camera; with --features: of views of segments");
+  verb->add_option("--rig", o->input.rig,
+                   "their pinhole camera; with --features: of views of segments");
   verb->add_option("--depth-unit-m", o->depth_unit_m, "unit of the depth maps, metres")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();

@@ -155,7 +155,6 @@ std::filesystem::path colmap_images(const std::filesystem::path& folder) {
                      : "give a file of poses, or the folder of a COLMAP model");
 }
 
-/// The time that an image is named after: seconds, or nanoseconds without a point.
 Pose interpolated(const CameraPose& a, const CameraPose& b, double time_s) {
   const double u = (time_s - *a.time_s) / (*b.time_s - *a.time_s);
   const Eigen::Quaterniond from(a.T_world_camera.R), to(b.T_world_camera.R);

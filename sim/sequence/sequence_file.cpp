@@ -25,17 +25,18 @@ std::vector<SourceEntry> source_entries(const MeasuredSequence& sequence) {
   const SequenceFigures& f = sequence.all;
   std::vector<SourceEntry> entries;
   entries.push_back(kept_entry("unseen", "an edge that no view shows is not there to be counted"));
+  entries.push_back(source_entry("missed", f.lost_whole,
+                                 "fraction of expected lines that a view does not show at all"));
   entries.push_back(source_entry(
       "clutter", of_true_ones(f.not_confirmed),
       "segments that no neighbouring view confirms, per one that is; texture is seen again"));
   entries.push_back(
       kept_entry("lateral_shift_px", "a shift that all views share moves the joined line with it"));
   entries.push_back(kept_entry("merge_px", "the distance below which two lines become one"));
-  entries.push_back(source_entry(
-      "edge_loss", f.loss,
-      fmt::format("fraction of expected lines' length; {:.3g} of the lines are lost whole, and "
-                  "{:.3g} of the length of the others",
-                  f.lost_whole.value, f.loss_of_found.value)));
+  entries.push_back(source_entry("edge_loss", f.loss_of_found,
+                                 fmt::format("fraction of the length of lines that are found; of "
+                                             "all expected lines {:.3g} is missing",
+                                             f.loss.value)));
   entries.push_back(source_entry(
       "endpoint_sigma_px", f.end_across_px,
       fmt::format("across the line; along it {:.3g} px, and {:.0f} % of ends are cut short",

@@ -14,6 +14,7 @@ namespace vernier::sim::internal {
 using SourcePointer = std::unique_ptr<UncertaintySource>;
 
 SourcePointer make_unseen_edges(const SourceSettings& settings);
+SourcePointer make_missed_edges(const SourceSettings& settings);
 /// No false edge is shorter than `min_length_px` in the left image.
 SourcePointer make_clutter(const SourceSettings& settings, double min_length_px);
 SourcePointer make_lateral_shift(const SourceSettings& settings);

@@ -21,6 +21,8 @@ constexpr SourceParameter parameters[] = {
      "standard deviation of the camera's roll, which is told to be 0", true},
     {"unseen", &SourceSettings::unseen, 0, 1, true,
      "share of the world's edges that no image shows", true},
+    {"missed", &SourceSettings::missed, 0, 1, true,
+     "share of the edges in view that the view misses whole", true},
     {"clutter", &SourceSettings::clutter, 0, 5, true,
      "false edges in a view, as a fraction of its edges", true},
     {"lateral_shift_px", &SourceSettings::lateral_shift_px, 0, 100, true,

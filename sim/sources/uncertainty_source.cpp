@@ -31,6 +31,7 @@ std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSet
   }
   std::vector<std::unique_ptr<UncertaintySource>> sources;
   if (s.unseen > 0) sources.push_back(make_unseen_edges(s));
+  if (s.missed > 0) sources.push_back(make_missed_edges(s));
   if (s.clutter > 0) sources.push_back(make_clutter(s, min_length_px));
   if (s.lateral_shift_px > 0) sources.push_back(make_lateral_shift(s));
   if (s.merge_px > 0) sources.push_back(make_line_merging(s));

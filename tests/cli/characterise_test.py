@@ -104,7 +104,7 @@ class Sequence(unittest.TestCase):
         for band in said['by_range'] + said['by_length'] + said['by_angle']:
             self.assertLessEqual(set(figures), set(band))
         written = tomllib.loads((self.folder / 'sources.toml').read_text())['sources']
-        self.assertEqual(set(written), {'clutter', 'edge_loss', 'endpoint_sigma_px', 'stereo_mismatch'})
+        self.assertEqual(set(written), {'missed', 'clutter', 'edge_loss', 'endpoint_sigma_px', 'stereo_mismatch'})
         for key, source in said['sources'].items():
             self.assertEqual(written.get(key), source['value'] if source['written'] else None, key)
         (self.folder / 'study.toml').write_text(

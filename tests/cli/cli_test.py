@@ -617,12 +617,15 @@ class BadInput(Case):
                       (*calibrate, '--tag-spacing'), ('advise', 'nominal', '--pixel-sigma'),
                       ('advise', 'nominal', '--square-m'), ('advise', 'nominal', '--at-m'),
                       ('convert', 'nominal', '-o', self.folder / 'r.json', '--unit-m'),
-                      ('diff', 'nominal', 'nominal', '--focus'),
-                      ('simulate', '--pose', '1,2,3', '--height-m')):
+                      ('diff', 'nominal', 'nominal', '--focus')):
             for number in ('nan', 'inf', '-1', '0'):
                 self.complains(*words, number,
                                of=f'{words[-1]}: "{number}" is not a finite number above 0',
                                leaves=[self.folder / 'rig.json', self.folder / 'r.json'])
+        for number in ('nan', 'inf', '-1', '0'):
+            above = '' if number in ('nan', 'inf') else ' above 0'
+            self.complains('simulate', '--pose', '1,2,3', '--height-m', number,
+                           of=f'--height-m: "{number}" is not a finite number{above}')
         self.complains('simulate', '--pose', '1,2,3', '--pitch-deg', 'nan',
                        of='--pitch-deg: "nan" is not a finite number')
         self.complains(*calibrate, '--hold', 'left.ax=nan', of='"nan" is not a finite number')

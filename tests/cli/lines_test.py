@@ -111,6 +111,30 @@ class Lines(verb_calls.ProgramCase):
         self.assertEqual(a, b)
         self.assertNotIn('pose', json.loads(a.splitlines()[0]))
 
+    def test_images_and_depths_named_by_their_times(self):
+        # as TUM's are; the second depth map is 30 ms late, and numbers do not tell who belongs to whom
+        for i, (image, depth) in enumerate([('10.175304', '10.160407'), ('10.207', '10.237'),
+                                            ('10.243', '10.251')]):
+            (self.folder / f'walk{i}.pgm').rename(self.folder / f'{image}.pgm')
+            (self.folder / f'far{i}.png').rename(self.folder / f'{depth}.png')
+        run = self.run_program('lines', '--image', '*.pgm', '--depth', '*.png', '--rig', 'K.txt', '-o',
+                               'out.jsonl', '--segments', 'segments.jsonl')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('1 of 3 images have no depth map within 20 ms and are left out', run.stderr)
+        rows = [json.loads(row) for row in (self.folder / 'segments.jsonl').read_text().splitlines()]
+        self.assertEqual([row['image'] for row in rows], ['10.175304.pgm', '10.243.pgm'])
+        (self.folder / '11.5.png').write_bytes((self.folder / '10.251.png').read_bytes())
+        self.refused('lines', '--image', '*.pgm', '--depth', '11.5*.png', '--rig', 'K.txt', '-o',
+                     'no.jsonl', says='no depth map is within 20 ms of an image')
+
+    def test_what_cannot_be_right_is_doubted(self):
+        for words, doubt in ((['--depth-unit-m', '0.1'], 'check the unit of the depth maps'),
+                             (['--poses', 'poses.csv', '--up', 'x'], 'check --up')):
+            run = self.run_program(*CALL, *words, '-o', 'out.jsonl')
+            self.assertEqual(run.returncode, 3, run.stderr)
+            self.assertIn(doubt, run.stderr)
+        self.refused(*CALL, '--height-m', '0', '-o', 'no.jsonl', says='above the floor')
+
     def test_bad_input(self):
         out = ['-o', 'out.jsonl']
         self.refused(*CALL, *out, '--poses', 'poses.csv', '--height-m', '-1', says='above the floor')

@@ -142,6 +142,27 @@ TEST(CameraPoses, OrderCountsWhereNothingElseDoes) {
   EXPECT_NE(said.find("has 4 poses for 1 images"), std::string::npos) << said;
 }
 
+// KITTI's files have no times; that of a line is its number, which is none.
+TEST(CameraPoses, LinesWithoutTimesGoByOrder) {
+  const Folder folder;
+  std::string text;
+  for (const Pose& T : some_poses()) {
+    for (int r = 0; r < 3; ++r) {
+      text += fmt::format("{:.12e} {:.12e} {:.12e} {:.12e}{}", T.R(r, 0), T.R(r, 1), T.R(r, 2),
+                          T.t[r], r == 2 ? "\n" : " ");
+    }
+  }
+  const CameraPoses read = read_camera_poses(folder.write("00.txt", text));
+  const std::vector<std::filesystem::path> images{"000000.png", "000002.png", "000004.png",
+                                                  "1403715273050000000.png"};
+  const std::vector<Pose> found = poses_of_images(read, images, "00.txt");
+  for (std::size_t i = 0; i < 4; ++i) expect_same(found[i], some_poses()[i], 1e-9);
+  EXPECT_NE(error_message([&] {
+              poses_of_images(read, {"000000.png"}, "00.txt");
+            }).find("has 4 poses for 1 images"),
+            std::string::npos);
+}
+
 TEST(CameraPoses, SaysWhatIsWrong) {
   const Folder folder;
   const auto said = [&](const std::string& name, const std::string& text) {

@@ -329,6 +329,8 @@ TEST(ConvertBadFiles, Colmap) {
   EXPECT_NE(
       error_message([&] { read(cameras); }).find("rigs.txt:1: its quaternion has the length 0.5"),
       std::string::npos);
+  folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 1 0.995 0 0 0 1 2 3\n");
+  EXPECT_EQ(error_message([&] { read(cameras); }).find("quaternion"), std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 0\n");
   EXPECT_NE(error_message([&] { read(cameras); }).find("camera 2 has no pose"), std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 3 1 1 0 0 0 1 2 3\n");

@@ -80,6 +80,18 @@ void expect_same_geometry(const Rig& read, const Rig& written, double tolerance 
   }
 }
 
+TEST(AslSensor, AFolderMayMissACamera) {
+  const Folder folder;
+  const Rig rig = test::rig_of_cameras(Pinhole{}, 3);
+  const auto files = write_sensors(rig, folder.path() / "mav0");
+  std::filesystem::remove_all(files[1].parent_path());
+  EXPECT_EQ(asl_sensor_files(folder.path()),
+            (std::vector<std::filesystem::path>{files[0], files[2]}));
+  const ImportedRig read = read_asl_sensors({folder.path()});
+  ASSERT_EQ(read.rig.cameras.size(), 2u);
+  EXPECT_LT((read.rig.T_camera_first[1].t - rig.T_camera_first[2].t).norm(), 1e-9);
+}
+
 TEST(AslSensor, RigIsThatOfItsFilesAndOfItsFolders) {
   for (const char* model : {"pinhole", "opencv4", "fisheye4"}) {
     for (const int cameras : {1, 2, 3}) {
@@ -175,7 +187,7 @@ TEST(KittiCalib, FourCamerasKeepTheirNames) {
     text += fmt::format("P{}: {}\n", i, numbers(projection({-0.1 * i, 0, 0})));
   }
   ImportOptions options;
-  options.size_px = Eigen::Vector2i(10, 10);
+  options.size_px = Eigen::Vector2i(1242, 375);
   const Rig rig = parse_kitti_calib(text, "calib.txt", options).rig;
   ASSERT_EQ(rig.cameras.size(), 4u);
   EXPECT_EQ(rig.cameras[3].name, "P3");
@@ -203,6 +215,7 @@ TEST(KittiCalib, SaysWhatIsWrong) {
     EXPECT_EQ(message.find("calib.txt"), 0u) << message;
   };
   expect(said("P0: " + a, false), "does not state the size");
+  expect(said("P0: " + a), "is outside images of 10x10; use the calibration of these images");
   expect(said("P0: 1 2 3"), "has 3 numbers, not 12");
   expect(said("P0: " + a + "\nP0: " + a), ":2: P0: stands a second time");
   expect(said("P0: " + a + "\n" + a), "with and without names");

@@ -99,10 +99,14 @@ TEST(Sequence, WhatASequenceCannotShowKeepsItsDefault) {
       sequence_samples(made.camera(), made.views(), [&](std::size_t v) { return made.depth(v); }),
       made.views());
   for (const SourceEntry& entry : source_entries(m)) {
-    const bool measured = entry.key == "clutter" || entry.key == "edge_loss" ||
-                          entry.key == "endpoint_sigma_px" || entry.key == "stereo_mismatch";
+    const bool measured = entry.key == "missed" || entry.key == "clutter" ||
+                          entry.key == "edge_loss" || entry.key == "endpoint_sigma_px" ||
+                          entry.key == "stereo_mismatch";
     EXPECT_EQ(entry.written, measured) << entry.key;
     EXPECT_FALSE(entry.note.empty());
+    if (entry.key == "missed") {
+      EXPECT_NEAR(entry.measured.value, 0.2, 0.04);
+    }
     if (entry.key == "clutter") {  // per true edge
       EXPECT_NEAR(entry.measured.value, 0.25, 0.04);
     }

@@ -253,7 +253,7 @@ TEST(SourceDistributions, DefaultsAreTheMemos) {
   for (const double SourceSettings::*off :
        {&SourceSettings::moved, &SourceSettings::mount_height_m, &SourceSettings::mount_pitch_deg,
         &SourceSettings::mount_roll_deg, &SourceSettings::clutter, &SourceSettings::merge_px,
-        &SourceSettings::unseen}) {
+        &SourceSettings::unseen, &SourceSettings::missed}) {
     EXPECT_EQ(defaults.*off, 0);
   }
 }

@@ -255,6 +255,7 @@ TEST(FreshCalibrations, OnlyTheLatestAreKeptAndTheOthersAreTheSameAgain) {
   for (const std::uint32_t draw : {0u, 0x80000000u, 1u, 2u, 3u, 1u, 0u, 0x80000000u, 4u}) {
     held.push_back(few.of(draw));
     EXPECT_LE(few.kept(), 3u);
+    EXPECT_EQ(held.back()->failure, all.of(draw)->failure);
     EXPECT_TRUE(same_rig(held.back()->rig, all.of(draw)->rig));
   }
   EXPECT_EQ(all.kept(), 6u);

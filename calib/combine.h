@@ -50,8 +50,8 @@ struct Combination {
 /// compared with all previous ones before it is used: pairs by the prior's offset
 /// (calib/estimate/prior_consistency.h), calibrations by their difference (rig_difference.h). An
 /// inconsistent one, as after a mechanical shock, is excluded and reported. Throws Error if the
-/// first inputs do not determine the rig, if inputs differ from the first in cameras or lens
-/// models, or if the only input holds neither corners nor pairs.
+/// first inputs do not determine the rig, or inputs differ from the first in cameras or lens
+/// models.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
 
 }  // namespace vernier

@@ -223,10 +223,6 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   Combination result;
   result.options = joint;
   const std::vector<JointEvidence> all = evidence_of_all(inputs);
-  if (inputs.size() == 1 && all[0].boards.empty() && all[0].pairs.size() == 0) {
-    throw Error(inputs.front().name, "holds no corners and no pairs: there is nothing to combine",
-                "give further inputs, or a file that keeps its corners");
-  }
   std::optional<GaussianRigPrior> before;
   for (const CombineInput& input : inputs) {
     check_models(start, input);

@@ -117,19 +117,19 @@ class Lines(verb_calls.ProgramCase):
                                             ('10.243', '10.251')]):
             (self.folder / f'walk{i}.pgm').rename(self.folder / f'{image}.pgm')
             (self.folder / f'far{i}.png').rename(self.folder / f'{depth}.png')
-        run = self.run_program('lines', '--image', '*.pgm', '--depth', '*.png', '--rig', 'K.txt', '-o',
+        run = self.run_program('lines', '--image', '10.*.pgm', '--depth', '10.*.png', '--rig', 'K.txt', '-o',
                                'out.jsonl', '--segments', 'segments.jsonl')
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn('1 of 3 images have no depth map within 20 ms and are left out', run.stderr)
         rows = [json.loads(row) for row in (self.folder / 'segments.jsonl').read_text().splitlines()]
         self.assertEqual([row['image'] for row in rows], ['10.175304.pgm', '10.243.pgm'])
         (self.folder / '11.5.png').write_bytes((self.folder / '10.251.png').read_bytes())
-        self.refused('lines', '--image', '*.pgm', '--depth', '11.5*.png', '--rig', 'K.txt', '-o',
+        self.refused('lines', '--image', '10.*.pgm', '--depth', '11.5*.png', '--rig', 'K.txt', '-o',
                      'no.jsonl', says='no depth map is within 20 ms of an image')
 
     def test_what_cannot_be_right_is_doubted(self):
         for words, doubt in ((['--depth-unit-m', '0.1'], 'check the unit of the depth maps'),
-                             (['--poses', 'poses.csv', '--up', 'x'], 'check --up')):
+                             (['--poses', 'poses.csv', '--up', 'y'], 'check --up')):
             run = self.run_program(*CALL, *words, '-o', 'out.jsonl')
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn(doubt, run.stderr)

@@ -31,6 +31,8 @@ struct SourceSettings {
   double mount_roll_deg = 0;    ///< of its roll, which is told to be 0
   double unseen = 0;            ///< share of the world's edges that no image shows
   double missed = 0;            ///< share of the edges in view that the view misses whole
+  double missed_alike = 0;      ///< correlation of what views at one place miss
+  double missed_alike_m = 1;    ///< side of the places that miss alike
   double clutter = 0;           ///< false edges, as a fraction of the edges in view
   double lateral_shift_px = 3;  ///< psi_l: |shift| ~ U[s/2, 3s/2] along the image normal
   ShiftMode lateral_shift_mode = ShiftMode::common;

@@ -52,6 +52,7 @@ struct SensingContext {
   std::uint64_t seed = 0;
   std::uint32_t trial = 0;
   std::uint32_t frame = 0;
+  Eigen::Vector2d at_m{0, 0};  ///< of the look, on the floor
 };
 
 /// The edge in the image of a camera (0 left, 1 right), displacements included.

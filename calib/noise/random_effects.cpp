@@ -89,7 +89,6 @@ void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimu
   const Index shape = all.information.rows() - rig;
   ReducedNormalEquations& z = result.equations;
   z = all;
-  result.by_shape = MatrixXd::Zero(rig, 0);
   if (shape == 0) return;
   const ScaledFactor S_ss(all.information.bottomRightCorner(shape, shape), "the board's shape");
   const MatrixXd X = all.information.topRightCorner(rig, shape) * S_ss.inverse();
@@ -100,8 +99,6 @@ void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimu
   z.scores = M.transpose() * all.scores;
   for (MatrixXd& S : z.frame_information) S = (M.transpose() * S * M).eval();
   z.prior_information = M.transpose() * all.prior_information * M;
-  const MatrixXd P = all.prior_information.bottomRightCorner(shape, shape);
-  result.by_shape = ScaledFactor(z.information, "the rig").inverse() * X * P;
 }
 
 /// The likelihood can have more than one maximum: from the last components and from the usual

@@ -22,9 +22,6 @@ struct EffectsMinimum {
   NoiseFit noise;                    ///< at it
   Eigen::MatrixXd free;              ///< free directions of the rig, parameters x free
   ReducedNormalEquations equations;  ///< of these, shape eliminated; its prior is in theirs
-  /// K: the rig's free directions move by K s where the board has an error s (m) of shape that the
-  /// minimum does not follow, since the prior holds it. 0 columns without a shape.
-  Eigen::MatrixXd by_shape;
   bool converged = false;
 };
 

@@ -4,11 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "calib/pose.h"
+#include "calib/statistics/quantile.h"
 #include "localise/place.h"
 #include "localise/views/camera_poses.h"
 #include "localise/views/depth_view.h"
@@ -38,6 +43,11 @@ FloorPose above_floor(const Pose& T_world_camera,
                       const FloorPoseOptions& options,
                       const std::string& place) {
   const auto [axis, sign] = up_axis(options.up);
+  constexpr double farthest_m = 1e4;
+  if (!(T_world_camera.t.cwiseAbs().maxCoeff() <= farthest_m)) {
+    throw Error(options.poses, "its pose of " + place + " is farther than 10 km from its origin",
+                "give metres, from an origin near the views");
+  }
   FloorPose pose{level_pose(T_world_camera, axis, sign, place), {}};
   LevelPose& level = pose.level;
   level.height_m += options.height_m;
@@ -62,6 +72,18 @@ std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
     all.push_back(above_floor(poses[i], options, images[i].string()));
   }
   return all;
+}
+
+std::string tilt_doubt(const std::vector<Pose>& T_floor_camera) {
+  constexpr double unlikely_deg = 60;
+  std::vector<double> tilts_deg;
+  for (const Pose& T : T_floor_camera) {  // the y axis of a level camera points down
+    tilts_deg.push_back(std::acos(std::clamp(-T.R(2, 1), -1.0, 1.0)) * 180 / std::numbers::pi);
+  }
+  const double tilt_deg = vernier::internal::median_or_zero(std::move(tilts_deg));
+  return tilt_deg > unlikely_deg
+             ? fmt::format("the camera is tilted by {:.0f} degrees (median): check --up", tilt_deg)
+             : "";
 }
 
 NamedFloorPoses all_floor_poses(const FloorPoseOptions& options) {

@@ -101,8 +101,8 @@ void run_views(const SimulateArguments& options, Session& session) {
   });
   SimulatedViewOptions views = options.views;
   views.at.height_m = options.height_m;
-  simulate_views(visibility, options.rig, sources, {.seed = options.seed, .trial = options.trial},
-                 views, session);
+  simulate_views(visibility, file, options.rig, sources,
+                 {.seed = options.seed, .trial = options.trial}, views, session);
 }
 
 void run(const SimulateArguments& options, const CLI::App& verb, Session& session) {

@@ -76,6 +76,7 @@ void report(const std::vector<double>& edges,
 }  // namespace
 
 void simulate_views(const Visibility& visibility,
+                    const std::filesystem::path& world,
                     const std::string& rig_name,
                     const SourceSettings& sources,
                     const SensingDraw& draw,
@@ -83,6 +84,7 @@ void simulate_views(const Visibility& visibility,
                     Session& session) {
   std::vector<std::filesystem::path> inputs = files_of_named_rig(rig_name);
   inputs.emplace_back(options.at.poses);
+  inputs.push_back(world);
   check_output_is_not_input(inputs, options.output);
   if (!options.segments.empty()) {
     check_output_is_not_input(inputs, options.segments);
@@ -117,6 +119,11 @@ void simulate_views(const Visibility& visibility,
     progress.update(static_cast<int>(i + 1), static_cast<int>(all.poses.size()));
   }
   outputs.commit();
+  std::vector<Pose> T_floor_camera;
+  for (const FloorPose& pose : all.poses) T_floor_camera.push_back(pose.T_floor_camera);
+  if (const std::string doubt = tilt_doubt(T_floor_camera); !doubt.empty()) {
+    session.add_trust_warning(doubt);
+  }
   report(edges, lines, sensor.baseline_m(), options.output, session);
 }
 

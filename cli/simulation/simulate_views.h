@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "cli/program/namespaces.h"
@@ -25,8 +26,9 @@ struct SimulatedViewOptions {
 };
 
 /// Simulates the view of each pose and writes all as `lines` does. Every view has draws of its own:
-/// its number is that of the frame.
+/// its number is that of the frame. `world` is the file of the world, which stays as it is.
 void simulate_views(const Visibility& visibility,
+                    const std::filesystem::path& world,
                     const std::string& rig_name,
                     const SourceSettings& sources,
                     const SensingDraw& draw,

@@ -154,6 +154,24 @@ void check_outputs(const BuildArguments& options, const std::vector<std::filesys
   }
 }
 
+/// Views of a wrong pose see each other's lines elsewhere.
+void doubt_poses(const SeenViews& seen, const JoinedLines& joined, Session& session) {
+  constexpr double least_again = 0.35;
+  if (const std::string doubt = tilt_doubt(seen.T_floor_camera); !doubt.empty()) {
+    session.add_trust_warning(doubt);
+  }
+  const auto again = std::count_if(joined.lines.begin(), joined.lines.end(),
+                                   [](const JoinedLine& line) { return line.views > 1; });
+  const double share = static_cast<double>(again) / std::max<double>(1, joined.lines.size());
+  if (share < least_again) {
+    session.add_trust_warning(
+        fmt::format("a second view saw {:.0f} % of the lines only: check that the poses are camera "
+                    "to world, in "
+                    "metres, and belong to the images",
+                    100 * share));
+  }
+}
+
 void report(const BuildArguments& options,
             const SeenViews& seen,
             const BuiltWorld& built,
@@ -215,15 +233,16 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
   built.world.name =
       options.name.empty() ? std::filesystem::path(source).stem().string() : options.name;
   const World world = build_world(built.world);
-  if (world.surfaces.empty()) {
-    session.warn(options.output + ": has no surfaces; without them nothing hides anything");
-  }
   const double hidden = hidden_share(world, joined, built, seen);
   OutputFiles outputs;
   outputs.add(options.output, format_world(built.world));
   if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built.of_lines));
   if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
   outputs.commit();
+  if (world.surfaces.empty()) {
+    session.warn(options.output + ": has no surfaces; without them nothing hides anything");
+  }
+  doubt_poses(seen, joined, session);
   report(options, seen, built, world, hidden, session);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/error_place.h"
 #include "calib/board_detection.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -102,7 +103,7 @@ std::string how_measured(const SequenceArguments& options) {
 
 /// Reports limitations of the results. Returns whether they can be written.
 bool report_limits(const MeasuredSequence& sequence, Session& session) {
-  constexpr double most_loss = 0.7, most_false = 0.7;
+  constexpr double most_loss = 0.7, most_false = 0.7, least_agreeing = 0.7;
   constexpr int least_clusters = 6;
   if (!sequence.with_depth) {
     session.warn("no depth maps: a line that something hides counts as lost");
@@ -113,7 +114,13 @@ bool report_limits(const MeasuredSequence& sequence, Session& session) {
   }
   bool any = false;
   for (const SourceEntry& entry : source_entries(sequence)) any = any || entry.written;
-  if (!any) {
+  if (sequence.depths_agree < least_agreeing) {
+    any = false;
+    session.add_trust_warning(
+        fmt::format("the depth maps agree with {:.0f} % of the segments of their own images only: "
+                    "check that they belong to the images, and --depth-unit-m",
+                    100 * sequence.depths_agree));
+  } else if (!any) {
     session.add_trust_warning(
         "nothing could be measured: fewer than 30 lines were seen by enough views; check that the "
         "poses are camera to world and belong to the images");
@@ -207,8 +214,10 @@ void characterise_sequence(const SequenceArguments& options,
   SequenceSamples samples;
   {
     Progress progress(session, "views");
-    samples = sequence_samples(camera, views, depth, options.how,
-                               [&](int done, int total) { progress.update(done, total); });
+    samples = with_errors_of(options.segments, [&] {
+      return sequence_samples(camera, views, depth, options.how,
+                              [&](int done, int total) { progress.update(done, total); });
+    });
   }
   const MeasuredSequence sequence = measure_sequence(samples, views, options.block_m, measuring);
   const bool trusted = report_limits(sequence, session);

@@ -10,6 +10,7 @@
 
 #include "cli/program/session.h"
 #include "cli/stereo/characterise_report.h"
+#include "sim/sequence/lost_again.h"
 #include "sim/sequence/measured_sequence.h"
 #include "sim/sequence/sequence_file.h"
 #include "sim/sources/measured_sources.h"
@@ -17,6 +18,7 @@
 
 namespace vernier::cli {
 
+using sim::internal::LostAgain;
 using sim::internal::MeasuredSequence;
 using sim::internal::SequenceBand;
 using sim::internal::SequenceFigures;
@@ -38,6 +40,7 @@ constexpr std::array sequence_figures{
     NamedFigure{"end_along_px", &SequenceFigures::end_along_px, "of an end, along its line"},
     NamedFigure{"cut_short", &SequenceFigures::cut_short, "of ends, more than 10 px apart"},
     NamedFigure{"false_edges", &SequenceFigures::not_confirmed, "of segments, in one view alone"},
+    NamedFigure{"beside_lines", &SequenceFigures::beside_lines, "of segments, on no expected line"},
     NamedFigure{"mismatch", &SequenceFigures::mismatch, "of segments found, depth off by 5 sigma"}};
 
 Json figures_json(const SequenceFigures& f) {
@@ -55,6 +58,17 @@ Json bands_json(const std::vector<SequenceBand>& bands,
   for (const SequenceBand& band : bands) {
     Json json{{from, band.from / unit}, {to, json_number(band.to / unit)}};
     json.update(figures_json(band.figures));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json lost_again_json(const std::vector<LostAgain>& bands) {
+  Json list = Json::array();
+  for (const LostAgain& band : bands) {
+    Json json = measured_json(band.again);
+    json["from_m"] = band.from_m;
+    json["to_m"] = json_number(band.to_m);
     list.push_back(std::move(json));
   }
   return list;
@@ -98,6 +112,18 @@ std::string bands_text(const std::vector<SequenceBand>& bands, const char* what,
   return text;
 }
 
+std::string lost_again_text(const std::vector<LostAgain>& bands) {
+  std::string text = "\nviews apart, m   of lines that one of two loses, lost by the other too\n";
+  for (const LostAgain& band : bands) {
+    const std::string range = std::isfinite(band.to_m)
+                                  ? fmt::format("{:g} to {:g}", band.from_m, band.to_m)
+                                  : fmt::format("above {:g}", band.from_m);
+    text += fmt::format("{:<14} {:>9} {:>20} {:>8}\n", range, shown_figure(band.again.value),
+                        shown_interval(band.again), band.again.samples);
+  }
+  return text;
+}
+
 }  // namespace
 
 Json sequence_json(const MeasuredSequence& sequence) {
@@ -114,9 +140,11 @@ Json sequence_json(const MeasuredSequence& sequence) {
           {"clusters", sequence.clusters},
           {"block_m", sequence.block_m},
           {"with_depth", sequence.with_depth},
+          {"depths_agree", sequence.depths_agree},
           {"sources", sources},
           {"figures", figures_json(sequence.all)},
           {"turn_rad", json_number(sequence.turn_rad)},
+          {"lost_again", lost_again_json(sequence.lost_again)},
           {"by_range", bands_json(sequence.by_range, "from_m", "to_m", 1)},
           {"by_length", bands_json(sequence.by_length, "from_px", "to_px", 1)},
           {"by_angle", bands_json(sequence.by_angle, "from_deg", "to_deg", radians_of_degree)}};
@@ -139,7 +167,8 @@ std::string sequence_text(const MeasuredSequence& sequence) {
     text += fmt::format("{:<14} {:>9} {:>20} {:>8}  {}\n", figure.name, shown_figure(value.value),
                         shown_interval(value), value.samples, figure.about);
   }
-  return text + bands_text(sequence.by_range, "range, m", 1) +
+  return text + lost_again_text(sequence.lost_again) +
+         bands_text(sequence.by_range, "range, m", 1) +
          bands_text(sequence.by_length, "length, px", 1) +
          bands_text(sequence.by_angle, "to sight, deg", radians_of_degree);
 }

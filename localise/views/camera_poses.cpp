@@ -179,6 +179,17 @@ Pose pose_at(const CameraPoses& poses,
   return interpolated(*(after - 1), *after, time_s);
 }
 
+/// Whether the times only count the poses, as those of KITTI's files, and images have another
+/// clock.
+bool only_count(const CameraPoses& poses, const std::vector<double>& image_times_s) {
+  double counted = 0;
+  for (const CameraPose& pose : poses.poses) {
+    if (pose.time_s != counted++) return false;
+  }
+  return std::none_of(image_times_s.begin(), image_times_s.end(),
+                      [&](double time_s) { return time_s <= counted; });
+}
+
 std::optional<std::vector<Pose>> by_time(const CameraPoses& poses,
                                          const std::vector<std::filesystem::path>& images,
                                          const std::string& place,
@@ -191,20 +202,12 @@ std::optional<std::vector<Pose>> by_time(const CameraPoses& poses,
     if (!time_s) return {};
     times_s.push_back(*time_s);
   }
+  if (only_count(poses, times_s)) return {};
   std::vector<Pose> found;
   for (std::size_t i = 0; i < images.size(); ++i) {
     found.push_back(pose_at(poses, times_s[i], gap_s, place, images[i].filename().string()));
   }
   return found;
-}
-
-/// Times that only count the poses, as those of KITTI's files, are none: poses then go by order.
-void drop_counted_times(CameraPoses& read) {
-  double counted = 0;
-  for (const CameraPose& pose : read.poses) {
-    if (pose.time_s != counted++) return;
-  }
-  for (CameraPose& pose : read.poses) pose.time_s.reset();
 }
 
 }  // namespace
@@ -236,7 +239,6 @@ CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder) {
     for (const TimedPose& pose : read_trajectory(file)) {
       read.poses.push_back({"", pose.time_s, pose.T_world_camera});
     }
-    drop_counted_times(read);
   }
   if (read.poses.empty()) throw Error(file.string(), "holds no poses", "give one for each image");
   return read;

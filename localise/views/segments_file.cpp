@@ -3,10 +3,13 @@
 #include "localise/views/segments_file.h"
 
 #include <cstddef>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "localise/joined_lines.h"
@@ -98,6 +101,7 @@ SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segme
 std::vector<SegmentsOfImage> read_segments(const std::filesystem::path& file) {
   constexpr std::size_t most_images = 100'000, longest_line = 256'000'000;
   std::vector<SegmentsOfImage> images;
+  std::set<std::string> names;
   TextLines lines(file, longest_line);
   std::string_view line;
   while (lines.next(line)) {
@@ -107,6 +111,11 @@ std::vector<SegmentsOfImage> read_segments(const std::filesystem::path& file) {
     }
     const Json json = vernier::internal::parse_json_line(line, lines.place());
     images.push_back(parse_image(JsonNode(json, lines.place() + ":")));
+    if (!names.insert(images.back().image).second) {
+      throw Error(lines.place(),
+                  vernier::internal::in_quotes(images.back().image) + " is there a second time",
+                  "leave one out: a view counts once");
+    }
   }
   if (images.empty()) {
     throw Error(file.string(), "holds no segments",

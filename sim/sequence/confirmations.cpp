@@ -63,11 +63,9 @@ void Confirmations::look(int view, const std::optional<stereo::internal::DepthIm
       Votes& votes = votes_[v][i];
       ++votes.asked;
       votes.confirmed = votes.confirmed || confirms(0);
-      double by_chance = 0;
-      for (const double off_px : displaced_px) {
-        by_chance += confirms(off_px) / static_cast<double>(std::size(displaced_px));
+      for (std::size_t k = 0; k < votes.by_chance.size(); ++k) {
+        votes.by_chance[k] = votes.by_chance[k] || confirms(displaced_px[k]);
       }
-      votes.no_chance *= 1 - by_chance;
     }
   }
 }
@@ -77,12 +75,15 @@ std::vector<ConfirmedSample> Confirmations::take() const {
   for (std::size_t v = 0; v < votes_.size(); ++v) {
     for (std::size_t i = 0; i < votes_[v].size(); ++i) {
       const Votes& votes = votes_[v][i];
-      if (votes.asked < least_asked) continue;
+      const double chance =
+          static_cast<double>(std::count(votes.by_chance.begin(), votes.by_chance.end(), true)) /
+          static_cast<double>(votes.by_chance.size());
+      if (votes.asked < least_asked || chance == 1) continue;
       const SequenceSegment& segment = views_[v].segments[i];
       const auto& s = segment.in_space;
       samples.push_back({sample_at(static_cast<int>(v), 0.5 * (s.a_m + s.b_m), s.b_m - s.a_m,
                                    segment.image_px.length_px()),
-                         votes.confirmed, votes.asked, 1 - votes.no_chance});
+                         votes.confirmed, votes.asked, chance});
     }
   }
   return samples;

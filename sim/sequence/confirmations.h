@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "calib/camera.h"
+#include "sim/sequence/segments_on_line.h"
 #include "sim/sequence/sequence_samples.h"
 #include "stereo/image/depth_image.h"
 
@@ -30,14 +33,17 @@ class Confirmations {
 
   /// What this view says of the segments of its neighbours.
   void look(int view, const std::optional<stereo::internal::DepthImage>& depth);
-  /// Of the segments that two or more neighbours should show.
+  /// Of the segments that two or more neighbours should show, but for those with edges on all
+  /// sides.
   std::vector<ConfirmedSample> take() const;
 
  private:
   struct Votes {
     int asked = 0;
     bool confirmed = false;
-    double no_chance = 1;  ///< that none confirms a segment that is not there
+    /// Whether one of them confirms it displaced so far, where it is not: edges that run beside
+    /// each other do so in all neighbours alike.
+    std::array<bool, std::size(displaced_px)> by_chance{};
   };
 
   Camera camera_;

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "calib/statistics/quantile.h"
+#include "sim/sequence/lost_again.h"
 #include "sim/sequence/sequence_samples.h"
 #include "sim/sources/clustered_samples.h"
 #include "sim/sources/measured_sources.h"
@@ -57,6 +58,7 @@ class FiguresOf {
     f.loss = ratio(expected, part, loss, [](const ExpectedSample& s) {
       return Sums{s.found_px, s.expected_px, s.chance_px};
     });
+    f.loss.interval.high = std::fmin(1.0, f.loss.interval.high);
     f.lost_whole = ratio(expected, part, loss, found_or_not);
     widen_to_wilson(f.lost_whole);
     std::vector<ExpectedSample> found;
@@ -73,18 +75,22 @@ class FiguresOf {
     add_along(part, f);
     f.not_confirmed = not_confirmed(part);
     widen_to_wilson(f.not_confirmed);
+    f.beside_lines = ratio(samples_.segments, part, share, [](const SegmentSample& s) {
+      return Sums{double(!s.on_line), 1, 0};
+    });
+    widen_to_wilson(f.beside_lines);
     f.mismatch = mismatch(part);
     widen_to_wilson(f.mismatch);
     return f;
   }
 
-  /// Segments that no view confirms, less the true ones of which all views lost the line.
+  /// Segments that no view confirms, less the true ones of which all views lost the line: a segment
+  /// with chance c of being confirmed where nothing is stands for 1 / (1 − c).
   MeasuredValue not_confirmed(const SequencePart& part) const {
     std::map<int, Sums> sums;
     const int count = add_to(sums, samples_.confirmed, part, [&](const ConfirmedSample& s) {
-      const double none_by_chance = 1 - s.chance;
-      return Sums{double(!s.confirmed), none_by_chance,
-                  none_by_chance * std::pow(lost_of(s.at.length_px), s.asked)};
+      return Sums{s.confirmed ? 0 : 1 / (1 - s.chance), 1,
+                  std::pow(lost_of(s.at.length_px), s.asked)};
     });
     return measured_ratio(sums, count, options_, [](const Sums& s) {
       return std::clamp((s.part - s.chance) / (s.whole - s.chance), 0.0, 1.0);
@@ -249,6 +255,13 @@ MeasuredSequence measure_sequence(const SequenceSamples& samples,
   result.all = figures.of([](const SampleAt&) { return true; });
   result.turn_rad = figures.turn_rad();
   constexpr double degree = std::numbers::pi / 180;
+  result.lost_again = lost_again(samples.expected, views, block, options);
+  result.alike = losses_alike(samples.expected, views, block, options);
+  const auto agree = std::count_if(samples.segments.begin(), samples.segments.end(),
+                                   [](const SegmentSample& s) { return s.depth_agrees; });
+  if (!samples.segments.empty()) {
+    result.depths_agree = static_cast<double>(agree) / static_cast<double>(samples.segments.size());
+  }
   result.by_range = bands(figures, {0, 1, 2, 3, 5, 10, beyond}, &SampleAt::range_m);
   result.by_angle =
       bands(figures, {0, 30 * degree, 60 * degree, 75 * degree, 91 * degree}, &SampleAt::angle_rad);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/pose.h"
+#include "sim/sequence/lost_again.h"
 #include "sim/sequence/sequence_samples.h"
 #include "sim/sources/measured_sources.h"
 
@@ -27,6 +28,8 @@ struct SequenceFigures {
   /// False edges, as a share f of the segments: of those that k views should show, with ℓ the share
   /// of lines of that length lost whole, f + (1 − f) ℓᵏ are shown by none, but for chance.
   MeasuredValue not_confirmed;
+  /// Segments on no line that enough other views saw: false edges, and lines that few views show.
+  MeasuredValue beside_lines;
   MeasuredValue mismatch;  ///< segments on lines whose depth is off, as a share
 };
 
@@ -44,6 +47,9 @@ struct MeasuredSequence {
   SequenceFigures all;
   double turn_rad = 0;  ///< φ above: error of a view's turn about its optical axis, and the like
   std::vector<SequenceBand> by_range, by_angle, by_length;
+  std::vector<LostAgain> lost_again;  ///< by the distance between two views
+  LossesAlike alike;
+  double depths_agree = 1;  ///< share of the segments along which their view's depth map agrees
 };
 
 /// The block of the way that each view belongs to: `block_m` of it each; equal numbers of views, of

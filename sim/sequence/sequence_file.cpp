@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/sequence/lost_again.h"
 #include "sim/sequence/measured_sequence.h"
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
@@ -27,9 +28,22 @@ std::vector<SourceEntry> source_entries(const MeasuredSequence& sequence) {
   entries.push_back(kept_entry("unseen", "an edge that no view shows is not there to be counted"));
   entries.push_back(source_entry("missed", f.lost_whole,
                                  "fraction of expected lines that a view does not show at all"));
+  const LossesAlike& alike = sequence.alike;
+  if (alike.correlation.known() && alike.correlation.interval.low > 0) {
+    entries.push_back(source_entry("missed_alike", alike.correlation,
+                                   "correlation of what two views at one place miss"));
+    entries.push_back(source_entry("missed_alike_m", alike.side_m,
+                                   "side of the places whose views miss alike, m"));
+  } else {
+    for (const char* key : {"missed_alike", "missed_alike_m"}) {
+      entries.push_back(kept_entry(key, "losses of views near each other are not more alike"));
+    }
+  }
   entries.push_back(source_entry(
       "clutter", of_true_ones(f.not_confirmed),
-      "segments that no neighbouring view confirms, per one that is; texture is seen again"));
+      fmt::format("segments that no neighbouring view confirms, per one that is; {:.3g} of all are "
+                  "on no line that enough other views saw",
+                  f.beside_lines.value)));
   entries.push_back(
       kept_entry("lateral_shift_px", "a shift that all views share moves the joined line with it"));
   entries.push_back(kept_entry("merge_px", "the distance below which two lines become one"));

@@ -73,6 +73,7 @@ class Sampling {
       const auto known = lines_.without(line, view, same_end_px * m_of_px);
       if (known) ask(placed, view, line, *known, depth);
     }
+    note_segments(placed, view, depth);
   }
 
   SequenceSamples take() {
@@ -81,6 +82,27 @@ class Sampling {
   }
 
  private:
+  /// Which segments lie on lines that enough others saw; not of those too uncertain to join.
+  void note_segments(const PlacedCamera& placed, int view, const std::optional<DepthImage>& depth) {
+    const Pose& T = views_[view].T_world_camera;
+    const auto& segments = views_[view].segments;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const int line = lines_.joined().line_of[view][i];
+      const double length_px = segments[i].image_px.length_px();
+      if (line == localise::JoinedLines::none || length_px < options_.min_length_px) continue;
+      const auto& s = segments[i].in_space;
+      const int others = lines_.joined().lines[line].views - 1;
+      SegmentSample sample{sample_at(view, 0.5 * (s.a_m + s.b_m), s.b_m - s.a_m, length_px),
+                           others >= options_.other_views, true};
+      auto shown = depth ? line_in_view(placed, T * s.a_m, T * s.b_m, 0) : std::nullopt;
+      if (shown) {
+        keep_where_depths_agree(*depth, options_.depth_floor_m, options_.depth_share, *shown);
+        sample.depth_agrees = 2 * shown->shown_count() >= shown->length_px();
+      }
+      samples_.segments.push_back(sample);
+    }
+  }
+
   void ask(const PlacedCamera& placed,
            int view,
            int line,
@@ -116,7 +138,8 @@ class Sampling {
                             0,
                             !cover.segments.empty(),
                             0,
-                            int(cover.segments.size())};
+                            int(cover.segments.size()),
+                            line};
     ChanceSample chance{at, 0};
     for (const double off_px : displaced_px) {
       const LineCover by_chance = segments_on(*in_view, segments, off_px, options_);

@@ -64,6 +64,7 @@ struct ExpectedSample {
   bool found = false;       ///< by a segment at all
   double chance_found = 0;  ///< share of the displaced lines that were
   int pieces = 0;           ///< segments along it that do not overlap each other
+  int line = 0;             ///< which of the joined lines it is
 };
 
 /// A segment found on an expected line.
@@ -96,12 +97,20 @@ struct ConfirmedSample {
   double chance = 0;  ///< that something else confirms one that is not there
 };
 
+/// A segment of a view.
+struct SegmentSample {
+  SampleAt at;
+  bool on_line = false;      ///< joined to one that enough other views saw
+  bool depth_agrees = true;  ///< with what the view's own depth map has along it, if there is one
+};
+
 struct SequenceSamples {
   std::vector<ExpectedSample> expected;
   std::vector<FoundSample> found;
   std::vector<ChanceSample> chance;
   std::vector<EndSample> ends;
   std::vector<ConfirmedSample> confirmed;
+  std::vector<SegmentSample> segments;
   int lines = 0;  ///< joined, seen by enough views
   bool with_depth = false;
 };
@@ -110,7 +119,7 @@ struct SequenceSamples {
 /// (localise/joined_lines.h), and asks of every view what it shows of each line that others saw.
 /// The line is then fitted without the view's own segments. Equations, and what is taken for
 /// expected, found, confirmed and wrong: docs/characterise.md. Throws Error unless the camera is a
-/// pinhole, for views without segments, and as join_lines() does.
+/// pinhole, for fewer than three views, and as join_lines() does.
 SequenceSamples sequence_samples(const Camera& camera,
                                  std::span<const SequenceView> views,
                                  const DepthOfView& depth,

@@ -32,7 +32,8 @@ StereoObservation Sensor::sense(const NoiseFreeView& look,
     };
     view.corners.push_back({corner, {pixel(0), pixel(1)}, false});
   }
-  const SensingContext context{rig_, rectification_, draw.seed, draw.trial, draw.frame};
+  const SensingContext context{rig_,       rectification_, draw.seed,
+                               draw.trial, draw.frame,     {look.pose.x_m, look.pose.y_m}};
   for (const auto& source : sources_) {
     source->apply(context, view);
     if (after) after(*source, view);

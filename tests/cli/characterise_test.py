@@ -101,10 +101,13 @@ class Sequence(unittest.TestCase):
         self.assertLess(figures['end_across_px']['value'], 0.2)
         self.assertAlmostEqual(figures['pieces']['value'], 1, delta=0.01)
         self.assertEqual(figures['mismatch']['value'], 0)
+        self.assertGreater(said['depths_agree'], 0.95)
+        self.assertEqual([band['from_m'] for band in said['lost_again']], [0, 0.25, 0.5, 1, 2, 4])
+        self.assertIsNone(said['lost_again'][-1]['to_m'])
         for band in said['by_range'] + said['by_length'] + said['by_angle']:
             self.assertLessEqual(set(figures), set(band))
         written = tomllib.loads((self.folder / 'sources.toml').read_text())['sources']
-        self.assertEqual(set(written), {'missed', 'clutter', 'edge_loss', 'endpoint_sigma_px', 'stereo_mismatch'})
+        self.assertEqual(set(written) - {'missed_alike', 'missed_alike_m'}, {'missed', 'clutter', 'edge_loss', 'endpoint_sigma_px', 'stereo_mismatch'})
         for key, source in said['sources'].items():
             self.assertEqual(written.get(key), source['value'] if source['written'] else None, key)
         (self.folder / 'study.toml').write_text(
@@ -127,6 +130,16 @@ class Sequence(unittest.TestCase):
         done = self.call(*SEQUENCE, '-o', 'sources.toml')
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn('poses', done.stderr)
+        self.assertFalse((self.folder / 'sources.toml').exists())
+
+    def test_depth_maps_of_other_images_are_noticed(self):
+        import verb_calls  # which imports this module
+        nearer = verb_calls.png16([[500] * 160] * 120)
+        for file in self.folder.glob('wall[0-9][0-9].png'):
+            file.write_bytes(nearer)
+        done = self.call(*SEQUENCE, '-o', 'sources.toml')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('the depth maps agree with 0 % of the segments of their own images only', done.stderr)
         self.assertFalse((self.folder / 'sources.toml').exists())
 
     def test_bad_input(self):

@@ -121,6 +121,11 @@ class SimulatedViews(verb_calls.ProgramCase):
                      says='distortion')
         self.refused(*LOOK, '--up', 'q', '--features', 'out.jsonl', says='--up')
         self.refused(*LOOK, '--features', 'way.csv', says='way.csv')
+        self.done('world', 'make', '--seed', '3', '-o', 'own.toml')
+        world = (self.folder / 'own.toml').read_bytes()
+        for words in (['--features', 'own.toml'], ['--features', 'o.jsonl', '--segments', 'own.toml']):
+            self.refused('simulate', '--world', 'own.toml', *LOOK[3:], *words, says='own.toml')
+            self.assertEqual(world, (self.folder / 'own.toml').read_bytes())
         self.refused(*LOOK[:-1], '-3', '--features', 'out.jsonl', says='above the floor')
         (self.folder / 'way.csv').write_text('image,t00\nv0,1\n')
         self.refused(*LOOK, '--features', 'out.jsonl', says='way.csv')

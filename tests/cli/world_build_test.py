@@ -118,6 +118,26 @@ class WorldBuild(verb_calls.ProgramCase):
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn('give --height-m 1.3', run.stderr)
 
+    def test_poses_that_cannot_be_right_are_doubted(self):
+        head, *rows = (self.folder / 'poses.csv').read_text().splitlines()
+        self.assertEqual(self.run_program(*BUILD, '-o', 'b.toml').returncode, 0)
+        run = self.run_program(*BUILD, '--up', 'y', '-o', 'b.toml')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('the camera is tilted by 90 degrees (median): check --up', run.stderr)
+        # each view at the place of another one, 3 m off
+        moved = [row.split(',') for row in rows]
+        for i, row in enumerate(moved):
+            row[8] = str(3.0 * i)  # y
+        (self.folder / 'moved.csv').write_text('\n'.join([head, *(','.join(row) for row in moved)]) + '\n')
+        run = self.run_program('world', 'build', '--segments', 'seen.jsonl', '--poses', 'moved.csv', '--height-m',
+                               '1', '-o', 'b.toml')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('of the lines only: check that the poses', run.stderr)
+        far = [[*row[:4], '4e6', *row[5:]] for row in moved]
+        (self.folder / 'far.csv').write_text('\n'.join([head, *(','.join(row) for row in far)]) + '\n')
+        self.refused('world', 'build', '--segments', 'seen.jsonl', '--poses', 'far.csv', '--height-m', '1',
+                     says='far.csv: its pose of walk0.pgm is farther than 10 km')
+
     def test_bad_input_is_refused(self):
         self.refused(*BUILD[:4], says='without --poses')
         self.refused('world', 'build', says='--segments or --features')
@@ -128,6 +148,9 @@ class WorldBuild(verb_calls.ProgramCase):
         self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt', says='matches 2 maps')
         self.refused(*BUILD, '--up', 'w', says='--up')
         self.refused('world', 'build', '--features', 'walk.jsonl', '--height-m', '2', says='its own')
+        twice = (self.folder / 'seen.jsonl').read_text()
+        (self.folder / 'seen.jsonl').write_text(2 * twice)
+        self.refused(*BUILD, says='seen.jsonl:6: "walk0.pgm" is there a second time')
         (self.folder / 'seen.jsonl').write_text('{"image": "walk0.pgm", "segments": [{}]}\n')
         self.refused(*BUILD, says='seen.jsonl:1')
         (self.folder / 'seen.jsonl').write_text('')

@@ -163,6 +163,21 @@ TEST(CameraPoses, LinesWithoutTimesGoByOrder) {
             std::string::npos);
 }
 
+// Seconds that happen to be whole are times where images are named after such seconds.
+TEST(CameraPoses, WholeSecondsAreTimes) {
+  const Folder folder;
+  std::string text;
+  for (int i = 0; i < 4; ++i) text += fmt::format("{} {} 0 0 0 0 0 1\n", i, 2 * i);
+  const CameraPoses read = read_camera_poses(folder.write("tum.txt", text));
+  const auto found = poses_of_images(read, {"0.5.png", "1.5.png", "2.25.png"}, "tum.txt", 2);
+  EXPECT_NEAR(found[0].t.x(), 1, 1e-12);
+  EXPECT_NEAR(found[2].t.x(), 4.5, 1e-12);
+  EXPECT_NE(error_message([&] {
+              poses_of_images(read, {"0.5.png", "1.5.png", "2.5.png", "3.5.png"}, "tum.txt", 2);
+            }).find("has no pose at the time of 3.5.png"),
+            std::string::npos);
+}
+
 TEST(CameraPoses, SaysWhatIsWrong) {
   const Folder folder;
   const auto said = [&](const std::string& name, const std::string& text) {

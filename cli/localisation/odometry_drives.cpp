@@ -38,16 +38,6 @@
 namespace vernier::cli {
 namespace {
 
-/// `image`: a file of the rig's images, of which a rig without sizes has that; empty: none.
-ReadRig stereo_rig(const std::string& name, Session& session, const std::string& image = "") {
-  ReadRig read = read_named_rig(name, session, image);
-  if (read.estimate.rig.cameras.size() != 2) {
-    throw Error(name, fmt::format("has {} cameras, not two", read.estimate.rig.cameras.size()),
-                "give a stereo rig; convert --cameras makes one of several cameras");
-  }
-  return read;
-}
-
 /// Where the left camera was at each pair. Throws Error if the poses are those of what carries the
 /// camera and the rig does not say where on it the camera is.
 std::vector<Pose> true_poses(const std::string& truth,
@@ -96,7 +86,7 @@ OdometryDrive drive_of_images(const OdometryOptions& options, Session& session) 
   if (files.size() < 2) {
     throw Error("--left", "one pair of images has no motion", "give two pairs or more");
   }
-  const ReadRig read = stereo_rig(options.rig, session, files.front().left.string());
+  const ReadRig read = read_stereo_rig(options.rig, session, files.front().left.string());
   const RigEstimate& rig = read.estimate;
   OdometryDrive drive{rig.rig, covariance_of(rig), {}, {}};
   if (!options.truth.empty()) {
@@ -121,7 +111,7 @@ void for_each_simulated_drive(const OdometryOptions& options,
                               const std::function<void(const OdometryDrive&)>& use) {
   constexpr double degree = std::numbers::pi / 180;
   const RigEstimate rig =
-      stereo_rig(options.rig.empty() ? "nominal" : options.rig, session).estimate;
+      read_stereo_rig(options.rig.empty() ? "nominal" : options.rig, session).estimate;
   ExperimentSettings settings;
   settings.sources = sources_of(options.sources, SourceSettings());
   settings.mount = {options.height_m, options.pitch_deg * degree};

@@ -29,19 +29,11 @@
 namespace vernier::cli {
 namespace {
 
-/// `image`: a file of the rig's images, of which a rig without sizes has that; empty: none.
-RigEstimate stereo_rig(const std::string& name, Session& session, const std::string& image = "") {
-  ReadRig file = read_named_rig(name, session, image);
-  if (file.estimate.rig.cameras.size() != 2) {
-    throw Error(name, "does not have two cameras", "give a stereo rig");
-  }
-  return std::move(file.estimate);
-}
-
 NamedViews views_of_file(const ViewOptions& options, Session& session) {
   const std::shared_ptr<const Rig> rig =
-      options.rig.empty() ? nullptr
-                          : std::make_shared<const Rig>(stereo_rig(options.rig, session).rig);
+      options.rig.empty()
+          ? nullptr
+          : std::make_shared<const Rig>(read_stereo_rig(options.rig, session).estimate.rig);
   NamedViews read{read_views(options.features, rig), {}};
   for (std::size_t i = 0; i < read.views.size(); ++i) {
     read.names.push_back("view " + std::to_string(i + 1));
@@ -51,7 +43,8 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
 
 NamedViews views_of_images(const ViewOptions& options, Session& session) {
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
-  const RigEstimate estimate = stereo_rig(options.rig, session, files.front().left.string());
+  const RigEstimate estimate =
+      read_stereo_rig(options.rig, session, files.front().left.string()).estimate;
   const auto rig = std::make_shared<const Rig>(estimate.rig);
   std::map<std::string, Pose2D> poses;
   if (!options.poses.empty()) poses = read_place_poses(options.poses);

@@ -242,6 +242,15 @@ ReadRig read_named_rig(const std::string& named, Session& session, const std::st
   return read;
 }
 
+ReadRig read_stereo_rig(const std::string& name, Session& session, const std::string& image) {
+  ReadRig read = read_named_rig(name, session, image);
+  if (read.estimate.rig.cameras.size() != 2) {
+    throw Error(name, fmt::format("has {} cameras, not two", read.estimate.rig.cameras.size()),
+                "give a stereo rig; convert --cameras makes one of several cameras");
+  }
+  return read;
+}
+
 std::vector<fs::path> files_of_named_rig(const std::string& named) {
   const std::vector<fs::path> files = named_files(named);
   return files_read(named_format(files), files);

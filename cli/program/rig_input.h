@@ -49,6 +49,9 @@ ReadRig read_rig_as(RigFormat format,
 /// one; empty: none. Throws Error naming the file.
 ReadRig read_named_rig(const std::string& name, Session& session, const std::string& image = "");
 
+/// The same; throws Error also unless the rig has two cameras.
+ReadRig read_stereo_rig(const std::string& name, Session& session, const std::string& image = "");
+
 /// The files that read_named_rig() reads, which no output may overwrite.
 std::vector<std::filesystem::path> files_of_named_rig(const std::string& name);
 

@@ -38,7 +38,7 @@ namespace {
 
 struct ImportArguments {
   std::string file, output, name, unit, up, plan, colmap;
-  ImportOptions options;
+  sim::internal::ImportOptions options;
   double eye_height_m = 1.2;
   bool no_route = false;
   MeshSelection selection;
@@ -60,7 +60,7 @@ int axis_of(const std::string& word) {
   throw Error("--up " + vernier::internal::shortened(word), "is no axis", "use x, y or z");
 }
 
-std::string storeys_text(const ImportReport& report, const ImportOptions& options) {
+std::string storeys_text(const ImportReport& report, const sim::internal::ImportOptions& options) {
   const std::string ends =
       report.top_m ? fmt::format(", up to {:.2f} m", *report.top_m) : std::string();
   if (options.floor_m) return fmt::format("floor at {:.2f} m (given){}", report.floor_m, ends);
@@ -77,7 +77,7 @@ std::string storeys_text(const ImportReport& report, const ImportOptions& option
 /// turned likewise.
 std::vector<PathCamera> level_by_cameras(ImportArguments& arguments, Mesh& mesh) {
   if (arguments.colmap.empty()) return {};
-  ImportOptions& options = arguments.options;
+  sim::internal::ImportOptions& options = arguments.options;
   if (options.up_axis) throw Error("--up", "is given beside --colmap", "leave one out");
   if (options.storey != 1) {
     throw Error("--storey", "is given beside --colmap, whose cameras say where the floor is",
@@ -93,7 +93,7 @@ std::vector<PathCamera> level_by_cameras(ImportArguments& arguments, Mesh& mesh)
 }
 
 void run(ImportArguments arguments, Session& session) {
-  ImportOptions& options = arguments.options;
+  sim::internal::ImportOptions& options = arguments.options;
   if (!arguments.unit.empty()) options.unit_m = unit_of(arguments.unit);
   if (!arguments.up.empty()) options.up_axis = axis_of(arguments.up);
   if (options.floor_m && options.storey != 1) {

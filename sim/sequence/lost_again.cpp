@@ -24,7 +24,8 @@ constexpr std::size_t distance_bands = borders_m.size() - 1;
 
 std::size_t band_of(double distance_m) {
   const auto above = std::upper_bound(borders_m.begin(), borders_m.end(), distance_m);
-  return std::min<std::size_t>(distance_bands - 1, static_cast<std::size_t>(above - borders_m.begin()) - 1);
+  return std::min<std::size_t>(distance_bands - 1,
+                               static_cast<std::size_t>(above - borders_m.begin()) - 1);
 }
 
 double apart(std::span<const SequenceView> views,

@@ -35,7 +35,8 @@ def parameters(lines):
         if text.count("(") + 1 <= text.count(")"):
             break
     listed = text.split(") {")[0].split(");")[0]
-    return ",".join(re.sub(r"\s*\b\w+$", "", part.strip()) for part in listed.split(","))
+    without_defaults = (re.sub(r"\s*=.*", "", part.strip()) for part in listed.split(","))
+    return ",".join(re.sub(r"\s*\b\w+$", "", part) for part in without_defaults)
 
 
 def local_names(text):

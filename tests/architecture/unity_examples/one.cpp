@@ -12,6 +12,7 @@ auto chosen = 5;
 constexpr std::array<std::pair<int, int>, 1> beside{{{1, 0}}};
 struct Part {};
 int overloaded(int x) { return x; }
+int with_default(int x, const char* y = "") { return x; }
 
 }  // namespace
 }  // namespace vernier

@@ -12,6 +12,7 @@ auto chosen = 6;
 int beside(int x) { return x; }
 struct Part {};
 int overloaded(double x) { return static_cast<int>(x); }
+long with_default(int x, const char* name = "x") { return x; }
 
 }  // namespace
 }  // namespace vernier

@@ -28,10 +28,22 @@ std::size_t band_of(double distance_m) {
                                static_cast<std::size_t>(above - borders_m.begin()) - 1);
 }
 
-double apart(std::span<const SequenceView> views,
-             const ExpectedSample& a,
-             const ExpectedSample& b) {
-  return (views[a.at.view].T_world_camera.t - views[b.at.view].T_world_camera.t).norm();
+/// Calls visit(first, other, distance of their views in metres) for every ordered pair of samples
+/// of one line.
+template <class Visit>
+void for_pairs(const std::vector<ExpectedSample>& expected,
+               std::span<const SequenceView> views,
+               Visit visit) {
+  std::map<int, std::vector<const ExpectedSample*>> of_line;
+  for (const ExpectedSample& s : expected) of_line[s.line].push_back(&s);
+  const auto centre = [&](const ExpectedSample& s) { return views[s.at.view].T_world_camera.t; };
+  for (const auto& [line, samples] : of_line) {
+    for (const ExpectedSample* first : samples) {
+      for (const ExpectedSample* other : samples) {
+        if (other != first) visit(*first, *other, (centre(*first) - centre(*other)).norm());
+      }
+    }
+  }
 }
 
 constexpr double pair_step_m = 0.1, farthest_m = 2, largest_side_m = 1.5;
@@ -107,24 +119,17 @@ LossesAlike losses_alike(const std::vector<ExpectedSample>& expected,
                          std::span<const SequenceView> views,
                          const std::vector<int>& block,
                          const MeasuringOptions& options) {
-  std::map<int, std::vector<const ExpectedSample*>> of_line;
-  for (const ExpectedSample& s : expected) of_line[s.line].push_back(&s);
   std::map<std::pair<int, std::size_t>, Pairs> sums;  // by block and step
-  for (const auto& [line, samples] : of_line) {
-    for (const ExpectedSample* first : samples) {
-      for (const ExpectedSample* other : samples) {
-        if (other == first) continue;
-        const double apart_m = apart(views, *first, *other);
-        if (apart_m >= farthest_m) continue;
-        const auto step = static_cast<std::size_t>(apart_m / pair_step_m);
-        Pairs& pairs = sums[{block[first->at.view], step}];
-        pairs.step = step;
-        pairs.all += 1;
-        pairs.first_lost += first->found ? 0 : 1;
-        pairs.both_lost += first->found || other->found ? 0 : 1;
-      }
-    }
-  }
+  for_pairs(expected, views,
+            [&](const ExpectedSample& first, const ExpectedSample& other, double apart_m) {
+              if (apart_m >= farthest_m) return;
+              const auto step = static_cast<std::size_t>(apart_m / pair_step_m);
+              Pairs& pairs = sums[{block[first.at.view], step}];
+              pairs.step = step;
+              pairs.all += 1;
+              pairs.first_lost += first.found ? 0 : 1;
+              pairs.both_lost += first.found || other.found ? 0 : 1;
+            });
   ClusteredSamples<Pairs> all;
   int lost = 0;
   for (const auto& [key, pairs] : sums) {
@@ -144,25 +149,17 @@ std::vector<LostAgain> lost_again(const std::vector<ExpectedSample>& expected,
                                   std::span<const SequenceView> views,
                                   const std::vector<int>& block,
                                   const MeasuringOptions& options) {
-  std::map<int, std::vector<const ExpectedSample*>> of_line;
-  for (const ExpectedSample& s : expected) of_line[s.line].push_back(&s);
   std::array<std::map<int, Sums>, distance_bands> sums;
   std::array<int, distance_bands> pairs{};
-  for (const auto& [line, samples] : of_line) {
-    for (const ExpectedSample* lost : samples) {
-      if (lost->found) continue;
-      for (const ExpectedSample* other : samples) {
-        if (other == lost) continue;
-        const double apart_m =
-            (views[lost->at.view].T_world_camera.t - views[other->at.view].T_world_camera.t).norm();
-        const std::size_t band = band_of(apart_m);
-        Sums& total = sums[band][block[lost->at.view]];
-        total.part += other->found ? 0 : 1;
-        total.whole += 1;
-        ++pairs[band];
-      }
-    }
-  }
+  for_pairs(expected, views,
+            [&](const ExpectedSample& first, const ExpectedSample& other, double apart_m) {
+              if (first.found) return;
+              const std::size_t band = band_of(apart_m);
+              Sums& total = sums[band][block[first.at.view]];
+              total.part += other.found ? 0 : 1;
+              total.whole += 1;
+              ++pairs[band];
+            });
   std::vector<LostAgain> all;
   for (std::size_t i = 0; i < distance_bands; ++i) {
     all.push_back({borders_m[i], borders_m[i + 1],

@@ -29,7 +29,8 @@ struct ConditionalBoardPoses;
 ///
 /// for p parameters, S the views' information: the prior's part, p − d, is not inflated. The
 /// residuals of a frame cannot show the error of its own pose (Bᵀr = 0 at the minimum for any
-/// noise), so no sandwich covers that part; it is assumed to be inflated like the rig.
+/// noise), so no sandwich covers that part; it is assumed to be inflated like the rig. With random
+/// effects all of this is weighted by them.
 struct RigAndBoards {
   Rig rig;
   std::vector<int> frames;          ///< ascending

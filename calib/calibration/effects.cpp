@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration/effects.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "calib/board/board_warp.h"
@@ -12,6 +15,8 @@
 #include "calib/calibrate.h"
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
+#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/noise_of_estimate.h"
 #include "calib/noise/random_effects.h"
 #include "calib/rig_estimate.h"
 #include "calib/solver/linearised_cost.h"
@@ -19,6 +24,11 @@
 
 namespace vernier::internal {
 namespace {
+
+constexpr double level = 0.01;  // of the tests
+constexpr int fewest_views_of_effects = 8;
+constexpr std::size_t most_points_of_effects = 150;
+constexpr double least_residual_px = 1e-3;
 
 /// The components and the shape of a minimum, warp and the rest of it together.
 CalibrationEffects effects_of(const EffectsMinimum& minimum,
@@ -72,9 +82,76 @@ void move_to_effects(const CalibrationOptions& options,
   cost.equations = minimum.equations;
   summary.effects = effects_of(minimum, observations.target_m);
   if (minimum.converged) return;
-  summary.trust_warnings.push_back(
+  summary.trust_warnings.emplace_back(
       "no minimum with the board's shape and motion was found; calibrate without --board-shape "
       "and --motion");
+}
+
+namespace {
+
+/// Why the effects are not looked for; empty if they are.
+std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOptions& options) {
+  const CalibrationSummary& summary = *usual.calibration;
+  if (options.warp == BoardWarp::free) return "the board's warp is estimated";
+  if (options.pixel_sigma_px > 0 || options.white_noise) return "the noise is given";
+  if (summary.views < fewest_views_of_effects) {
+    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_effects);
+  }
+  if (!summary.trust_warnings.empty()) return "the calibration is doubtful";
+  if (summary.rms_px < least_residual_px) return "the corners are exact";
+  const std::size_t points = usual.evidence->observations.target_m.size();
+  if (points > most_points_of_effects) {
+    return fmt::format("a board of {} points takes too long; --board-shape estimates its shape",
+                       points);
+  }
+  return {};
+}
+
+}  // namespace
+
+bool EffectsTest::has_shape() const { return shape && shape->p_value < level; }
+bool EffectsTest::has_motion() const { return motion && motion->p_value < level; }
+
+EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options) {
+  EffectsTest test;
+  test.not_tested = reason_not_to_test(usual, options);
+  if (!test.not_tested.empty()) return test;
+  const NoiseParts all{.motion = usual.rig.cameras.size() > 1, .shape = true};
+  const double spacing_m = point_spacing_m(usual.evidence->observations.target_m);
+  const NoiseFit fit = fit_corner_noise(noise_likelihood(usual, all), spacing_m);
+  const auto without = [&](bool NoiseParts::*part) {
+    NoiseParts fewer = fit.parts;
+    fewer.*part = false;
+    return fit_corner_noise(noise_likelihood(usual, fewer), spacing_m, fit.noise)
+        .solution.minus_two_log;
+  };
+  const double minus_two_log = fit.solution.minus_two_log;
+  test.shape = shape_test(minus_two_log, without(&NoiseParts::shape));
+  if (fit.parts.motion) test.motion = motion_test(minus_two_log, without(&NoiseParts::motion));
+  return test;
+}
+
+RigEstimate calibrate_with_found_effects(const BoardObservations& observations,
+                                         CalibrationOptions& options,
+                                         EffectsTest& test) {
+  RigEstimate usual = calibrate(observations, options);
+  const auto keep_usual = [&](const std::string& why) {
+    options.board_shape = options.motion = false;
+    usual.calibration->warnings.push_back("calibrated without the board's shape and motion: " +
+                                          why);
+    return usual;
+  };
+  try {
+    test = test_effects(usual, options);
+    options.board_shape = test.has_shape();
+    options.motion = test.has_motion();
+    if (!has_effects(options)) return usual;
+    RigEstimate estimate = calibrate(observations, options);
+    if (estimate.calibration->trust_warnings.empty()) return estimate;
+    return keep_usual(estimate.calibration->trust_warnings.front());
+  } catch (const Error& error) {
+    return keep_usual(error.what());
+  }
 }
 
 }  // namespace vernier::internal

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/noise/fit_corner_noise.h"
 #include "calib/rig_estimate.h"
 #include "calib/solver/linearised_cost.h"
 #include "calib/solver/reprojection_problem.h"
@@ -28,5 +31,28 @@ void move_to_effects(const CalibrationOptions& options,
                      BoardState& state,
                      LinearisedCost& cost,
                      CalibrationSummary& summary);
+
+/// Whether a calibration's corners show the shape of the board, and its motion between exposures:
+/// likelihood ratio tests at 1 % (calib/noise/fit_corner_noise.h) of the restricted likelihood with
+/// white noise, a smooth field, shape and motion. Of a board that is flat and stands still, 1 % of
+/// the calibrations find either.
+struct EffectsTest {
+  std::optional<ComponentTest> shape;   ///< nothing where it was not tested
+  std::optional<ComponentTest> motion;  ///< the same; one camera sees none
+  std::string not_tested;               ///< why neither was; empty if they were
+
+  bool has_shape() const;
+  bool has_motion() const;
+};
+
+/// The test of a calibration without effects. Not of fewer than 8 views, of boards of more than 150
+/// points (it takes long), of doubtful calibrations, nor where the options leave effects no place.
+EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options);
+
+/// calibrate() with the effects that the test finds, which are then set in the options, as the test
+/// is. Without effects, with a warning, where they lead to no trustworthy minimum.
+RigEstimate calibrate_with_found_effects(const BoardObservations& observations,
+                                         CalibrationOptions& options,
+                                         EffectsTest& test);
 
 }  // namespace vernier::internal

@@ -116,6 +116,7 @@ CalibrationEffects parse_effects(const Node& node) {
   CalibrationEffects effects;
   for (const auto& [key, member] : effect_keys)
     effects.*member = not_negative(node.at(key), most_value);
+  if (!(effects.white_px > 0)) throw Error(node.at("white_px").place(), "is not above 0", remedy);
   if (!node.has("shape_m")) return effects;
   const Node shape = node.at("shape_m");
   const Eigen::VectorXd values = shape.vector();
@@ -205,6 +206,13 @@ void check_summary(const CalibrationSummary& summary,
     if (static_cast<std::size_t>(summary.outliers[i].id) < boards.target_m.size()) continue;
     throw Error(node.at("outliers").at(i).place(),
                 fmt::format("is corner {} of a board of {}", summary.outliers[i].id,
+                            boards.target_m.size()),
+                remedy);
+  }
+  if (summary.effects && !summary.effects->shape_m.empty() &&
+      summary.effects->shape_m.size() != boards.target_m.size()) {
+    throw Error(node.at("effects").at("shape_m").place(),
+                fmt::format("is of {} points of a board of {}", summary.effects->shape_m.size(),
                             boards.target_m.size()),
                 remedy);
   }

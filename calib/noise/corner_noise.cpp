@@ -7,8 +7,14 @@
 #include <limits>
 
 #include "calib/error.h"
+#include "calib/rig_estimate.h"
 
 namespace vernier::internal {
+
+CornerNoise noise_of(const CalibrationEffects& effects) {
+  return {effects.white_px, effects.field_px,      effects.field_length_m, effects.motion_rad,
+          effects.motion_m, effects.shape_plane_m, effects.shape_height_m};
+}
 
 double point_spacing_m(const std::vector<Eigen::Vector3d>& target_m) {
   double least = std::numeric_limits<double>::infinity();

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "calib/rig_estimate.h"
+
 namespace vernier::internal {
 
 /// Standard deviations of what makes the corners of a board differ from their prediction. With D_f
@@ -33,6 +35,9 @@ struct NoiseParts {
   bool motion = true;  ///< false: the cameras are synchronised, or the board stood still
   bool shape = false;
 };
+
+/// The components of a calibration's random effects.
+CornerNoise noise_of(const CalibrationEffects& effects);
 
 /// The least distance between two points of the target: a square of a chessboard. Throws Error for
 /// fewer than two points, or two in one place.

@@ -5,13 +5,19 @@
 #include <Eigen/Cholesky>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "calib/base/decompositions.h"
 #include "calib/board/board_warp.h"
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/noise/corner_covariance.h"
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/frame_rows.h"
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/solver/pose_factor.h"
 
 namespace vernier::internal {
@@ -52,6 +58,53 @@ Eigen::Matrix<double, N, N> inverse_factor(const Eigen::LLT<Eigen::Matrix<double
   return C.matrixU().solve(Eigen::Matrix<double, N, N>::Identity());
 }
 
+/// The conditional poses, frame by frame.
+class ConditionalPoses {
+ public:
+  explicit ConditionalPoses(Eigen::Index parameters)
+      : S_wa_(Eigen::MatrixXd::Zero(2, parameters)), S_ww_(Eigen::Matrix2d::Zero()) {}
+
+  void add(const Products& p, int frame) {
+    const Eigen::LLT<Matrix6> C = pose_factor(p.BB, frame);
+    result_.frames.push_back({-C.solve(p.BA), -C.solve(p.BW), inverse_factor<6>(C)});
+    S_wa_ += p.WA + p.BW.transpose() * result_.frames.back().by_rig;
+    S_ww_ += p.WW + p.BW.transpose() * result_.frames.back().by_warp;
+  }
+
+  ConditionalBoardPoses result(BoardWarp warp_is) {
+    result_.warp_by_rig = Eigen::MatrixXd::Zero(2, S_wa_.cols());
+    result_.warp_factor.setZero();
+    const Eigen::LLT<Eigen::Matrix2d> warp(S_ww_);
+    if (warp_is == BoardWarp::free && warp.info() == Eigen::Success) {
+      result_.warp_by_rig = -warp.solve(S_wa_);
+      result_.warp_factor = inverse_factor<2>(warp);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  ConditionalBoardPoses result_;
+  Eigen::Matrix<double, 2, Eigen::Dynamic> S_wa_;
+  Eigen::Matrix2d S_ww_;
+};
+
+/// The products of the rows of one frame, the derivatives by the warp among those by the rig, with
+/// V = K Kᵀ: of K⁻¹ A, K⁻¹ B, K⁻¹ W.
+Products whitened_products(const FrameRows& rows, const Eigen::MatrixXd& V, Eigen::Index n) {
+  const Cholesky K(V);
+  const Eigen::MatrixXd B = K.solve_lower(Eigen::MatrixXd(rows.by_pose));
+  const Eigen::MatrixXd AW = K.solve_lower(rows.by_rig);
+  Products p(n);
+  p.BB = B.transpose() * B;
+  p.BA = B.transpose() * AW.leftCols(n);
+  if (AW.cols() == n) return p;
+  const Eigen::MatrixXd W = AW.rightCols<2>();
+  p.BW = B.transpose() * W;
+  p.WW = W.transpose() * W;
+  p.WA = W.transpose() * AW.leftCols(n);
+  return p;
+}
+
 }  // namespace
 
 ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
@@ -59,9 +112,7 @@ ConditionalBoardPoses conditional_board_poses(const BoardObservations& observati
   const auto n = parameter_count(state.rig);
   const std::vector<Eigen::Vector3d> target_m = warped_target(observations.target_m, state.warp_m);
   const auto shapes = warp_shapes(observations.target_m);
-  ConditionalBoardPoses result;
-  Eigen::Matrix<double, 2, Eigen::Dynamic> S_wa = Eigen::MatrixXd::Zero(2, n);
-  Eigen::Matrix2d S_ww = Eigen::Matrix2d::Zero();
+  ConditionalPoses poses(n);
   auto view = observations.views.begin();
   ViewLinearisation J;
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
@@ -72,19 +123,28 @@ ConditionalBoardPoses conditional_board_poses(const BoardObservations& observati
                      target_m, *view, Linearise::with_jacobian, J, &shapes);
       add_view(J, intrinsics_index(state.rig, c), c == 0 ? -1 : pose_index(state.rig, c), p);
     }
-    const Eigen::LLT<Matrix6> C = pose_factor(p.BB, state.frames[f]);
-    result.frames.push_back({-C.solve(p.BA), -C.solve(p.BW), inverse_factor<6>(C)});
-    S_wa += p.WA + p.BW.transpose() * result.frames.back().by_rig;
-    S_ww += p.WW + p.BW.transpose() * result.frames.back().by_warp;
+    poses.add(p, state.frames[f]);
   }
-  result.warp_by_rig = Eigen::MatrixXd::Zero(2, n);
-  result.warp_factor.setZero();
-  const Eigen::LLT<Eigen::Matrix2d> warp(S_ww);
-  if (!state.warp_m.isZero(0) && warp.info() == Eigen::Success) {
-    result.warp_by_rig = -warp.solve(S_wa);
-    result.warp_factor = inverse_factor<2>(warp);
+  return poses.result(state.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free);
+}
+
+ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
+                                              const BoardState& state,
+                                              const CalibrationEffects& effects,
+                                              double pixel_sigma_px) {
+  const auto n = parameter_count(state.rig);
+  const BoardWarp warp = effects.shape_m.empty() ? BoardWarp::known : BoardWarp::free;
+  BoardObservations shaped = observations;
+  for (std::size_t i = 0; i < effects.shape_m.size(); ++i) shaped.target_m[i] += effects.shape_m[i];
+  BoardState unwarped = state;  // the shape contains the warp
+  if (warp == BoardWarp::free) unwarped.warp_m.setZero();
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n, n);
+  ConditionalPoses poses(n);
+  for (const FrameRows& rows : frame_rows(shaped, unwarped, all, warp)) {
+    const Eigen::MatrixXd V = corner_covariance(rows, noise_of(effects), observations.target_m);
+    poses.add(whitened_products(rows, V / (pixel_sigma_px * pixel_sigma_px), n), rows.frame);
   }
-  return result;
+  return poses.result(warp);
 }
 
 }  // namespace vernier::internal

@@ -7,6 +7,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/rig_estimate.h"
 
 namespace vernier::internal {
 
@@ -39,5 +40,14 @@ struct ConditionalBoardPoses {
 /// board. Throws Error if the corners of a frame do not determine the pose of its board.
 ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
                                               const BoardState& state);
+
+/// The same of a calibration with random effects: everything above weighted by V_f⁻¹
+/// (calib/noise/corner_noise.h) at the shape that was found, with V_f in units of pixel_sigma_px².
+/// The warp counts as estimated if there is a shape; of the rest of the shape, which its prior
+/// keeps small, the error is left out.
+ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
+                                              const BoardState& state,
+                                              const CalibrationEffects& effects,
+                                              double pixel_sigma_px);
 
 }  // namespace vernier::internal

@@ -5,13 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "calib/board_observations.h"
+#include "calib/calibration/effects.h"
+#include "calib/calibration/solve_again.h"
+#include "calib/noise/fit_corner_noise.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/validation/model_comparison.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/calibrate_pairs.h"
+#include "cli/calibration/component_test.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -66,31 +73,34 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
   for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
 }
 
-/// The random effects of the calibration, one a line.
-std::string effects_text(const CalibrationEffects& effects) {
+/// " (p = 0.001)", or nothing for effects that were asked for.
+std::string found_text(const std::optional<ComponentTest>& test) {
+  return test ? fmt::format(" ({})", p_text(*test)) : "";
+}
+
+/// The random effects of the calibration, one a line, and the tests that found them.
+std::string effects_text(const CalibrationEffects& effects, const EffectsTest& test) {
   std::string text =
       fmt::format("random effects: {:.3f} px white, {:.3f} px smooth over {:.0f} mm\n",
                   effects.white_px, effects.field_px, 1e3 * effects.field_length_m);
   if (effects.motion_m > 0) {
     text += fmt::format(
-        "  the board moved between exposures: {:.2f} mm and {:.2f} mrad rms about each axis\n",
-        1e3 * effects.motion_m, 1e3 * effects.motion_rad);
+        "  the board moved between exposures: {:.2f} mm and {:.2f} mrad rms about each axis{}\n",
+        1e3 * effects.motion_m, 1e3 * effects.motion_rad, found_text(test.motion));
   }
   if (!effects.shape_m.empty()) {
-    text += fmt::format("  the board is uneven: {:.3f} mm in height, {:.3f} mm in its plane, rms\n",
-                        1e3 * effects.shape_height_m, 1e3 * effects.shape_plane_m);
+    text += fmt::format(
+        "  the board is uneven: {:.3f} mm in height, {:.3f} mm in its plane, rms{}\n",
+        1e3 * effects.shape_height_m, 1e3 * effects.shape_plane_m, found_text(test.shape));
   }
   return text;
 }
 
-/// Whatever solves the stored corners again does so without random effects: they are not stored.
-KeepEvidence kept_evidence(const CalibrateArguments& options, Session& session) {
-  if (options.no_evidence) return KeepEvidence::no;
-  if (!options.solver.board_shape && !options.solver.motion) return KeepEvidence::yes;
-  session.warn(
-      "the rig file holds no corners: check, combine and report would solve them without the "
-      "board's shape and motion; keep the corners file (vernier detect)");
-  return KeepEvidence::no;
+/// Null for what was not tested.
+Json effects_test_json(const EffectsTest& test) {
+  Json json{{"shape", test_json(test.shape)}, {"motion", test_json(test.motion)}};
+  if (!test.not_tested.empty()) json["not_tested"] = test.not_tested;
+  return json;
 }
 
 void run(const CalibrateArguments& options, Session& session) {
@@ -98,9 +108,10 @@ void run(const CalibrateArguments& options, Session& session) {
     refuse_options(*options.board.app, board_options, "not used with --pairs, which need no board");
     refuse_options(*options.board.app, std::array{"--model", "--know"},
                    "with --pairs this comes from the prior");
-    refuse_options(*options.board.app,
-                   std::array{"--warp", "--no-model-check", "--board-shape", "--motion"},
-                   "only valid for views of a board");
+    refuse_options(
+        *options.board.app,
+        std::array{"--warp", "--no-model-check", "--board-shape", "--motion", "--no-effects"},
+        "only valid for views of a board");
     refuse_options(*options.board.app, std::array{"--pixel-sigma"},
                    "the noise is taken from the pairs file and scaled by the residuals");
     calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
@@ -109,22 +120,27 @@ void run(const CalibrateArguments& options, Session& session) {
   check_output_is_not_input(files_named(options.board), options.output);
   check_output_is_not_input({options.solver.prior}, options.output);
   CalibrationOptions calibration = calibration_options(options.solver, session);
-  RigEstimate estimate = calibrate(load(options.board, session), calibration);
+  BoardObservations observations = load(options.board, session);
+  EffectsTest test;
+  RigEstimate estimate = options.solver.looks_for_effects()
+                             ? calibrate_with_found_effects(observations, calibration, test)
+                             : calibrate(std::move(observations), calibration);
   calibration.board_shape = calibration.motion = false;  // lens models are compared without
   ModelComparison comparison;
   if (!options.no_model_check) {
-    comparison = compare_models(estimate, calibration);
+    comparison = compare_models(without_effects(estimate), calibration);
     std::vector<std::string>& warnings = estimate.calibration->warnings;
     warnings.insert(warnings.end(), comparison.warnings.begin(), comparison.warnings.end());
     if (!comparison.not_compared.empty()) {
       warnings.push_back("lens models were not compared: " + comparison.not_compared);
     }
   }
-  write_rig(estimate, options.output, kept_evidence(options, session));
+  write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   report_warnings(estimate, session);
   Json json = rig_json(estimate);
   std::string text = rig_table(estimate);
-  if (estimate.calibration->effects) text += effects_text(*estimate.calibration->effects);
+  if (estimate.calibration->effects) text += effects_text(*estimate.calibration->effects, test);
+  if (options.solver.looks_for_effects()) json["effects_test"] = effects_test_json(test);
   if (!comparison.richer.empty()) {
     json["model_comparison"] = comparison_json(comparison);
     text += comparison_table(comparison);

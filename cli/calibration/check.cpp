@@ -15,6 +15,8 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/calibration_problem.h"
+#include "calib/calibration/effects.h"
+#include "calib/calibration/solve_again.h"
 #include "calib/camera.h"
 #include "calib/camera/model_nesting.h"
 #include "calib/error.h"
@@ -94,14 +96,6 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
   }
 }
 
-/// Held-out boards are measured against the target as it was made.
-void refuse_shape(const CheckArguments& options, const CalibrationOptions& how) {
-  if (options.holdout && how.board_shape) {
-    throw Error("--holdout", "compares lengths with the target as it was made, without its shape",
-                "leave out --board-shape, or give --halves");
-  }
-}
-
 /// Halves that share a prior cannot show how far they are apart.
 void refuse_prior(const CheckArguments& options, const CalibrationOptions& how) {
   if (options.halves && (how.prior || !how.known.empty())) {
@@ -135,11 +129,6 @@ Solved solve_again(const CheckArguments& options, Session& session) {
     const bool stored_warning = warning.starts_with(stored_warning_prefix(path.string()));
     stored_warning ? session.add_trust_warning(warning) : session.warn(warning);
   }
-  if (file.estimate.calibration && file.estimate.calibration->effects) {
-    throw Error(options.rig,
-                "is a calibration with the board's shape or motion, whose file holds no corners",
-                "give the corners instead, with --board-shape and --motion as it had");
-  }
   if (!file.estimate.evidence || !file.estimate.calibration) {
     throw Error(options.rig, "the file has no stored evidence to solve again",
                 "calibrate without --no-evidence, or give the corners");
@@ -152,7 +141,8 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   if (file.estimate.evidence->pairs.size() > 0) {
     session.warn(options.rig + ": matched pairs are ignored; only the board views are checked");
   }
-  Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
+  Solved solved{
+      options_to_solve_again(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
   refuse_prior(options, solved.how);
   const BoardObservations& observations = solved.from_file->evidence->observations;
@@ -167,22 +157,40 @@ Solved solve(const CheckArguments& options, Session& session) {
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   refuse_prior(options, solved.how);
-  refuse_shape(options, solved.how);
   BoardObservations observations = load(options.board, session);
   check_splits(options, observations);
-  solved.estimate = calibrate(std::move(observations), solved.how);
+  if (options.solver.looks_for_effects()) {
+    EffectsTest test;
+    solved.estimate = calibrate_with_found_effects(observations, solved.how, test);
+  } else {
+    solved.estimate = calibrate(std::move(observations), solved.how);
+  }
   for (const std::string& warning : solved.estimate.calibration->trust_warnings)
     session.add_trust_warning(warning);
   return solved;
 }
 
-CheckedProblem problem_to_check(const Solved& solved) {
-  const RigEstimate& estimate = solved.estimate;
+/// Said where a check knows no random effects.
+void tell_of_effects(const CheckArguments& options, const Solved& solved, Session& session) {
+  if (!solved.how.board_shape && !solved.how.motion) return;
+  session.warn(fmt::format(
+      "the board's shape and motion are estimated; {} without, from the same corners",
+      options.holdout ? "mrcal, Monte Carlo and the held-out boards check the calibration"
+                      : "mrcal and Monte Carlo check the calibration"));
+}
+
+BoardState state_of(const RigEstimate& estimate) {
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  return {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
+}
+
+/// Of the usual calibration.
+CheckedProblem problem_to_check(const Solved& solved, const RigEstimate& estimate) {
   const CalibrationEvidence& evidence = *estimate.evidence;
   CheckedProblem p;
   p.problem = problem_of(solved.how, estimate.rig);
   p.problem.pixel_sigma_px = estimate.calibration->pixel_sigma_px;
-  p.state = {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
+  p.state = state_of(estimate);
   p.start = initial_state(evidence.observations, models_of(estimate.rig));
   p.start.rig = with_held_values(p.start.rig, solved.how.held);
   if (solved.how.warp == BoardWarp::known) p.start.warp_m = evidence.warp_m;
@@ -198,7 +206,9 @@ CheckedProblem problem_to_check(const Solved& solved) {
 void run(const CheckArguments& options, Session& session) {
   const Solved solved = solve(options, session);
   tell_of_first_pair(options, solved, session);
-  const CheckedProblem problem = problem_to_check(solved);
+  const RigEstimate usual = without_effects(solved.estimate);
+  tell_of_effects(options, solved, session);
+  const CheckedProblem problem = problem_to_check(solved, usual);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
             {"cameras", problem.state.rig.cameras.size()},
             {"frames", problem.state.frames.size()},
@@ -215,16 +225,9 @@ void run(const CheckArguments& options, Session& session) {
     for (const std::string& failure : part.failures) session.add_trust_warning(failure);
   };
   if (solved.from_file) add("file", check_file(*solved.from_file, solved.estimate));
-  const bool effects = solved.how.board_shape || solved.how.motion;
-  if (effects) {
-    const std::string reason = "knows no board's shape or motion";
-    add("mrcal", {nullptr, "mrcal check skipped: mrcal " + reason, reason, {}});
-    add("monte_carlo", {nullptr, "Monte Carlo check skipped: it " + reason, reason, {}});
-  } else {
-    add("mrcal", options.no_mrcal ? CheckSection{nullptr, "mrcal check skipped", "--no-mrcal", {}}
-                                  : check_by_mrcal(problem, session));
-    add("monte_carlo", check_by_monte_carlo(problem, options.copies));
-  }
+  add("mrcal", options.no_mrcal ? CheckSection{nullptr, "mrcal check skipped", "--no-mrcal", {}}
+                                : check_by_mrcal(problem, session));
+  add("monte_carlo", check_by_monte_carlo(problem, options.copies));
   CalibrationOptions how = solved.how;
   how.reject_outliers = false;  // already removed
   how.check_input = false;      // already checked
@@ -237,7 +240,7 @@ void run(const CheckArguments& options, Session& session) {
                                session));
   }
   if (!options.injected.empty()) {
-    add("injected", check_injected(solved.estimate, problem.observations, problem.state,
+    add("injected", check_injected(solved.estimate, problem.observations, state_of(solved.estimate),
                                    problem.problem.pixel_sigma_px,
                                    {.psi_c = options.injected,
                                     .draws = options.copies.trials,
@@ -247,7 +250,8 @@ void run(const CheckArguments& options, Session& session) {
   }
   if (options.holdout) {
     const BoardStand stand = options.stand == "still" ? BoardStand::still : BoardStand::hand_held;
-    add("noise", check_corner_noise(solved.estimate, stand, session));
+    how.board_shape = how.motion = false;
+    add("noise", check_corner_noise(usual, stand, session));
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
                                           .splits = options.splits,

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "calib/board_state.h"
-#include "calib/calibrate.h"
-#include "calib/camera/model_nesting.h"
 #include "calib/covariance.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/rig.h"
@@ -54,48 +52,6 @@ ToleranceCheck covariance_gate_of(const RigEstimate& from_file, const RigEstimat
 }
 
 }  // namespace
-
-CalibrationOptions options_of_file(const RigEstimate& estimate) {
-  const CalibrationSummary& summary = *estimate.calibration;
-  CalibrationOptions options;
-  options.models = models_of(estimate.rig);
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  const Eigen::VectorXd values = parameters(estimate.rig);
-  for (const std::string& held : summary.held) {
-    const auto i = std::find(names.begin(), names.end(), held) - names.begin();
-    if (i < values.size()) options.held.push_back({held, values[i]});
-  }
-  // If the noise was estimated from the residuals, χ² equals the degrees of freedom.
-  const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
-  options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
-  const std::vector<GaussianRigPrior>& priors = estimate.evidence->priors;
-  if (!priors.empty()) options.prior = priors[0];
-  if (priors.size() > 1) {  // priors of single parameters (--know) follow a file's
-    const GaussianRigPrior& known = priors[1];
-    const std::vector<std::string> all = parameter_names(known.rig);
-    for (std::size_t i = 0; i < known.covariance.names.size(); ++i) {
-      const std::string& name = known.covariance.names[i];
-      const auto k = static_cast<Eigen::Index>(i);
-      const auto at = std::find(all.begin(), all.end(), name) - all.begin();
-      options.known.push_back(
-          {name, parameters(known.rig)[at], std::sqrt(known.covariance.matrix(k, k))});
-    }
-  }
-  options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
-  options.reject_outliers = false;
-  options.check_input = false;
-  options.white_noise = estimate.covariance && estimate.covariance->kind == CovarianceKind::mvb;
-  return options;
-}
-
-RigEstimate with_default_names(RigEstimate estimate) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < estimate.rig.cameras.size(); ++i) {
-    names.push_back(default_camera_name(i));
-  }
-  rename_cameras(estimate, names);
-  return estimate;
-}
 
 CheckSection check_file(const RigEstimate& from_file, const RigEstimate& again) {
   CheckSection part;

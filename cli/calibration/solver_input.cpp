@@ -75,10 +75,18 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
                    "rig file whose parameters and covariance are used as a prior");
   verb->add_flag("--warp", input.warp, "also estimate the board warp");
   verb->add_flag("--keep-outliers", input.keep_outliers, "do not reject outlier corners");
-  verb->add_flag("--board-shape", input.board_shape,
-                 "estimate the uneven shape of the board, a displacement of each corner");
-  verb->add_flag("--motion", input.motion,
-                 "let the board move between the exposures of the cameras (hand-held)");
+  CLI::Option* shape =
+      verb->add_flag("--board-shape", input.board_shape,
+                     "estimate the uneven shape of the board, a displacement of each corner "
+                     "(default: where a test finds it)");
+  CLI::Option* motion =
+      verb->add_flag("--motion", input.motion,
+                     "let the board move between the exposures of the cameras, as a hand-held one "
+                     "does (default: where a test finds it)");
+  verb->add_flag("--no-effects", input.no_effects,
+                 "leave the board's shape and motion out, and do not look for them")
+      ->excludes(shape)
+      ->excludes(motion);
 }
 
 GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {

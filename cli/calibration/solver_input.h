@@ -22,16 +22,19 @@ struct SolverInput {
   std::vector<std::string> known;  ///< NAME=VALUE,SIGMA
   std::string prior;               ///< a rig file
   bool warp = false, keep_outliers = false;
-  bool board_shape = false, motion = false;
+  bool board_shape = false, motion = false, no_effects = false;
+
+  /// Whether the board's shape and motion are estimated where a test finds them.
+  bool looks_for_effects() const { return !board_shape && !motion && !no_effects; }
 };
 
 /// Adds the solver options. `input` must outlive the parsing.
 void add_solver_options(CLI::App* verb, SolverInput& input);
 
 /// The names of all these options.
-inline constexpr std::array solver_options{"--model",         "--pixel-sigma", "--hold",
-                                           "--know",          "--prior",       "--warp",
-                                           "--keep-outliers", "--board-shape", "--motion"};
+inline constexpr std::array solver_options{
+    "--model", "--pixel-sigma",   "--hold",        "--know",   "--prior",
+    "--warp",  "--keep-outliers", "--board-shape", "--motion", "--no-effects"};
 
 /// Converts to calibration options. Throws Error naming an option that cannot be parsed.
 CalibrationOptions calibration_options(const SolverInput& input, Session& session);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib/board_observations.h"
+#include "calib/calibration/solve_again.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/rig.h"
@@ -51,6 +52,14 @@ void add_correlation(const Covariance& covariance, Json& json) {
   }
 }
 
+Json effects_json(const CalibrationEffects& effects) {
+  return {{"white_px", effects.white_px},
+          {"motion_m", effects.motion_m},
+          {"motion_rad", effects.motion_rad},
+          {"shape_height_m", effects.shape_m.empty() ? 0 : effects.shape_height_m},
+          {"shape_plane_m", effects.shape_m.empty() ? 0 : effects.shape_plane_m}};
+}
+
 Json summary_json(const RigEstimate& estimate) {
   const CalibrationSummary& s = *estimate.calibration;
   Json json{{"source", s.source},
@@ -65,6 +74,7 @@ Json summary_json(const RigEstimate& estimate) {
             {"prior_chi2", s.prior_chi2},
             {"warnings", s.warnings},
             {"doubts", s.trust_warnings}};
+  if (s.effects) json["effects"] = effects_json(*s.effects);
   if (estimate.evidence) {
     const CalibrationEvidence& evidence = *estimate.evidence;
     std::size_t corners = 0;
@@ -148,11 +158,12 @@ Json report_rig(const RigEstimate& estimate,
         "cross-validation cannot be shown.";
     return json;
   }
-  json["corners"] = report_corners(estimate);
+  const RigEstimate usual = without_effects(estimate);
+  json["corners"] = report_corners(usual);
   if (estimate.covariance) {
     json["projection"] = report_projection(estimate);
     if (estimate.covariance_mvb || estimate.covariance->kind == CovarianceKind::mvb) {
-      json["view_influence"] = report_views(estimate);
+      json["view_influence"] = report_views(usual);
       json["true_bound"] = is_true_bound(estimate, json["view_influence"]);
       if (json["true_bound"]) drop_warning_of_bound(json["calibration"]["warnings"]);
     }

@@ -7,13 +7,13 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/solve_again.h"
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/distributions.h"
 #include "calib/validation/held_out_boards.h"
 #include "calib/validation/model_comparison.h"
 #include "calib/validation/split_halves.h"
-#include "cli/calibration/check_file.h"
 #include "cli/calibration/check_halves.h"
 #include "cli/calibration/check_held_out.h"
 #include "cli/program/session.h"
@@ -139,18 +139,20 @@ Json report_validation(const RigEstimate& estimate,
     return json;
   }
   try {
-    add_models(estimate, options_of_file(estimate), json);
+    const RigEstimate usual = without_effects(estimate);
+    add_models(usual, options_to_solve_again(usual), json);
   } catch (const Error& error) {
     note(fmt::format("Lens models were not compared: {}.", error.what()));
   }
   const BoardObservations observations = at_frames(
       estimate.evidence->observations, evenly_spaced(estimate.evidence->frames, max_frames));
-  const CalibrationOptions options = options_of_file(with_default_names(estimate));
+  CalibrationOptions options = options_to_solve_again(with_default_names(estimate));
   try {
     add_halves(observations, options, file, session, json);
   } catch (const Error& error) {
     note(fmt::format("Halves of the views were not compared: {}.", error.what()));
   }
+  options.board_shape = options.motion = false;  // lengths are those of the board as it was made
   try {
     add_left_out(observations, options, file, session, json);
   } catch (const Error& error) {

@@ -19,6 +19,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/board_target.h"
+#include "calib/calibration/solve_again.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/planning/views_needed.h"
@@ -122,8 +123,11 @@ void know(const PlanArguments& o,
   const bool has_views = rig.evidence && !rig.evidence->observations.views.empty();
   plan.from_calibration = has_views && o.board.empty();
   if (plan.from_calibration) {
-    plan.known = with_errors_of(name, [&] { return knowledge_of(rig, o.seed, name); });
-    plan.basis = fmt::format("the calibration {} and further views of the same kind", name);
+    plan.known =
+        with_errors_of(name, [&] { return knowledge_of(without_effects(rig), o.seed, name); });
+    const bool effects = rig.calibration && rig.calibration->effects;
+    plan.basis = fmt::format("the calibration {}{} and further views of the same kind", name,
+                             effects ? " (without the board's shape and motion)" : "");
     return;
   }
   const std::string words = o.board.empty() ? "9x6" : o.board;

@@ -95,6 +95,7 @@ function summary_table(rig) {
     ["Prior", calibration.prior_dof > 0 ? `of`
       + ` ${counted(calibration.prior_dof, "parameter")}; χ² =`
       + ` ${significant(calibration.prior_chi2, 3)} at the solution` : "none"],
+    ...(calibration.effects ? [["Random effects", effects_words(calibration.effects)]] : []),
     ["Board", warp ? `estimated warp: ${significant(1e3 * warp[0], 2)} mm along rows,`
       + ` ${significant(1e3 * warp[1], 2)} mm along columns`
       : "as specified; no warp estimated"],
@@ -105,6 +106,22 @@ function summary_table(rig) {
     { head: "Item", text: true, cell: ([name]) => name },
     { head: "Value", text: true, cell: ([, words]) => words },
   ], rows, { wide: false });
+}
+
+/** What was estimated beside the rig, and what of the page is without it. */
+function effects_words(effects) {
+  const { motion_m, motion_rad, shape_height_m, shape_plane_m } = effects;
+  const words = [];
+  if (shape_height_m > 0) {
+    words.push(`an uneven board, ${significant(1e3 * shape_height_m, 2)} mm in height and`
+      + ` ${significant(1e3 * shape_plane_m, 2)} mm in its plane (RMS)`);
+  }
+  if (motion_m > 0) {
+    words.push(`motion between the exposures, ${significant(1e3 * motion_m, 2)} mm and`
+      + ` ${significant(1e3 * motion_rad, 2)} mrad (RMS about each axis)`);
+  }
+  return `${words.join("; ")}. Residuals, influence of views, lens models and held-out boards are`
+    + " those of the calibration without";
 }
 
 /** Geometric mean of σ divided by the bound's σ; null if the covariance is the bound. */

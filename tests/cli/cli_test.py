@@ -125,36 +125,40 @@ class RealPairs(Case):
         self.assertLessEqual(json.loads(self.calibrate('--model', 'opencv5').stdout)['rms_px'], 0.16)
 
     def test_board_shape_and_motion(self):
-        usual = json.loads(self.calibrate('--no-model-check').stdout)
-        done = self.calibrate('--no-model-check', '--board-shape', '--motion')
-        self.assertIn('the rig file holds no corners', done.stderr)
+        usual = json.loads(self.calibrate('--no-model-check', '--no-effects').stdout)
+        found = json.loads(self.calibrate('--no-model-check', '--model', 'opencv4').stdout)
+        for effect in ('shape', 'motion'):  # a board held by hand
+            self.assertLess(found['effects_test'][effect]['p_value'], 0.01)
         rig = json.loads((self.folder / 'rig.json').read_text())
-        self.assertNotIn('evidence', rig)
+        self.assertEqual(len(rig['evidence']['observations']), 26)
         effects = rig['calibration']['effects']
         self.assertEqual(len(effects['shape_m']), 3 * 54)
         self.assertGreater(effects['shape_height_m'], 2e-5)
         self.assertLess(effects['shape_height_m'], 5e-4)
+        self.works('sample', self.folder / 'rig.json', '-n', '2', '-o', self.folder / 's.csv')
+        checked = self.works('check', self.folder / 'rig.json', '--trials', '60', '--no-mrcal', '--json')
+        self.assertIn("the board's shape and motion are estimated; mrcal and Monte Carlo check the "
+                      'calibration without, from the same corners', checked.stderr)
+        self.assertTrue(all(gate['ok'] for gate in json.loads(checked.stdout)['file'].values()
+                            if isinstance(gate, dict) and 'ok' in gate))
+        combined = self.works('combine', self.folder / 'rig.json', '-o', self.folder / 'prior.json')
+        self.assertIn('no corners and no pairs, priors alone\n', combined.stdout)
+        self.assertIn('it counts with its covariance', combined.stderr)
+        self.assertIn("(without the board's shape and motion)", self.works(
+            'plan', self.folder / 'rig.json', '--depth-error', '0.01@2').stdout)
+        forced = json.loads(self.calibrate('--no-model-check', '--board-shape', '--motion').stdout)
+        self.assertNotIn('effects_test', forced)
+        rig = json.loads((self.folder / 'rig.json').read_text())
         for key in ('pixel_sigma_px', 'rms_px', 'chi2', 'dof'):
             self.assertEqual(rig['calibration'][key], usual['calibration'][key]
                              if 'calibration' in usual else usual[key])
-        self.works('sample', self.folder / 'rig.json', '-n', '2', '-o', self.folder / 's.csv')
-        self.complains('check', self.folder / 'rig.json', '--no-mrcal', of="board's shape or motion, "
-                       'whose file holds no corners; give the corners instead')
-        self.assertIn('no corners and no pairs, priors alone\n', self.works(
-            'combine', self.folder / 'rig.json', '-o', self.folder / 'prior.json').stdout)
-        self.complains('check', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
-                       IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
-                       '--board-shape', '--holdout', '--no-mrcal',
-                       of='--holdout: compares lengths with the target as it was made')
-        self.assertFalse((self.folder / 'no.json').exists())
         self.assertIn('(without random effects)', self.works(
             'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
             '--board', '9x6', '--square-m', '0.025', '--no-model-check', '--motion', '-o',
             self.folder / 'motion.json').stdout)
-        self.assertIn('the board is uneven', self.works(
-            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
-            '--board', '9x6', '--square-m', '0.025', '--no-model-check', '--board-shape', '-o',
-            self.folder / 'shape.json').stdout)
+        self.complains('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                       IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
+                       '-o', self.folder / 'no.json', '--no-effects', '--motion', of='--motion')
         for option, of in ((('--warp',), '--warp: is not estimated beside --board-shape or '
                             '--motion; give --board-shape alone, which contains it'),
                            (('--pixel-sigma', '0.2'), '--pixel-sigma: is one of the components '

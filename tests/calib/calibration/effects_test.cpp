@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/effects.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "calib/calibrate.h"
+#include "calib/calibration/combine_evidence.h"
+#include "calib/calibration/solve_again.h"
+#include "calib/combine.h"
+#include "calib/error.h"
+#include "calib/noise/corner_covariance.h"
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/frame_rows.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_file.h"
+#include "calib/uncertainty/joint_information.h"
+#include "tests/support/error_message.h"
+#include "tests/support/noisy_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+
+using namespace vernier::internal;
+
+namespace {
+
+constexpr CornerNoise hand_held{.white_px = 0.05,
+                                .field_px = 0.03,
+                                .field_length_m = 0.06,
+                                .motion_rad = 4e-3,
+                                .motion_m = 1e-3,
+                                .shape_plane_m = 5e-5,
+                                .shape_height_m = 3e-4};
+
+BoardObservations corners(const CornerNoise& noise, int frames = 10) {
+  return test::noisy_board(test::stereo_rig(), {5, 4, 0.03}, {.seed = 8101, .frames = frames},
+                           noise)
+      .board.observations;
+}
+
+const RigEstimate& with_effects() {
+  static const RigEstimate estimate = calibrate(
+      corners(hand_held),
+      {.reject_outliers = false, .check_input = false, .board_shape = true, .motion = true});
+  return estimate;
+}
+
+TEST(Effects, AreFoundWhereTheyAre) {
+  CalibrationOptions options{.reject_outliers = false, .check_input = false};
+  EffectsTest test;
+  const RigEstimate found = calibrate_with_found_effects(corners(hand_held), options, test);
+  EXPECT_TRUE(options.board_shape && options.motion);
+  EXPECT_TRUE(test.has_shape() && test.has_motion());
+  EXPECT_EQ(parameters(found.rig), parameters(with_effects().rig));
+  ASSERT_TRUE(found.calibration->effects);
+}
+
+TEST(Effects, AreLeftOutWhereTheyAreNot) {
+  const BoardObservations white = corners({.white_px = 0.1});
+  CalibrationOptions options{.reject_outliers = false, .check_input = false};
+  EffectsTest test;
+  const RigEstimate found = calibrate_with_found_effects(white, options, test);
+  EXPECT_FALSE(options.board_shape || options.motion);
+  EXPECT_TRUE(test.shape && test.motion && test.not_tested.empty());
+  EXPECT_FALSE(found.calibration->effects);
+  EXPECT_EQ(parameters(found.rig),
+            parameters(calibrate(white, {.reject_outliers = false, .check_input = false}).rig));
+}
+
+TEST(Effects, OfABoardThatOnlyMovesAreItsMotion) {
+  CornerNoise noise = hand_held;
+  noise.shape_plane_m = noise.shape_height_m = 0;
+  CalibrationOptions options{.reject_outliers = false, .check_input = false};
+  EffectsTest test;
+  const RigEstimate found = calibrate_with_found_effects(corners(noise), options, test);
+  EXPECT_TRUE(options.motion);
+  EXPECT_FALSE(options.board_shape);
+  EXPECT_TRUE(found.calibration->effects->shape_m.empty());
+}
+
+TEST(Effects, AreNotLookedForWhereTheyHaveNoPlace) {
+  const auto reason = [](CalibrationOptions options, int frames) {
+    options.check_input = options.reject_outliers = false;
+    EffectsTest test;
+    calibrate_with_found_effects(corners(hand_held, frames), options, test);
+    EXPECT_FALSE(options.board_shape || options.motion);
+    return test.not_tested;
+  };
+  EXPECT_EQ(reason({.warp = BoardWarp::free}, 10), "the board's warp is estimated");
+  EXPECT_EQ(reason({.pixel_sigma_px = 0.1}, 10), "the noise is given");
+  EXPECT_EQ(reason({}, 7), "7 views; it takes 8");
+}
+
+// A rig file keeps all that it takes to solve the corners again, with effects and without.
+TEST(Effects, AreSolvedAgainFromARigFile) {
+  RigEstimate named = with_effects();
+  rename_cameras(named, {"port", "starboard"});
+  const RigEstimate read = parse_rig(format_rig(named), "rig.json").estimate;
+  ASSERT_TRUE(read.evidence && read.calibration->effects);
+  EXPECT_EQ(read.calibration->effects->shape_m, with_effects().calibration->effects->shape_m);
+  const RigEstimate again =
+      calibrate(read.evidence->observations, options_to_solve_again(with_default_names(read)));
+  EXPECT_EQ(parameters(again.rig), parameters(with_effects().rig));
+  EXPECT_EQ(again.covariance->matrix, with_effects().covariance->matrix);
+  const RigEstimate usual = without_effects(read);
+  EXPECT_FALSE(usual.calibration->effects);
+  EXPECT_EQ(usual.rig.cameras[1].name, "starboard");
+  EXPECT_EQ(usual.covariance->names.front().substr(0, 5), "port.");
+  EXPECT_EQ(
+      parameters(usual.rig),
+      parameters(
+          calibrate(corners(hand_held), {.reject_outliers = false, .check_input = false}).rig));
+  EXPECT_EQ(parameters(without_effects(usual).rig), parameters(usual.rig));
+}
+
+TEST(Effects, OfARigFileMustFitItsBoard) {
+  const auto fault = [](auto change) {
+    RigEstimate wrong = with_effects();
+    change(*wrong.calibration->effects);
+    return test::error_message([&] { parse_rig(format_rig(wrong), "rig.json"); });
+  };
+  EXPECT_EQ(fault([](CalibrationEffects& e) { e.shape_m.pop_back(); }),
+            "rig.json: calibration.effects.shape_m: is of 19 points of a board of 20; calibrate "
+            "again");
+  EXPECT_EQ(fault([](CalibrationEffects& e) { e.white_px = 0; }),
+            "rig.json: calibration.effects.white_px: is not above 0; calibrate again");
+}
+
+// The joint cost has no effects, so that such a calibration counts as the prior that it is.
+TEST(Effects, MakeACalibrationAPriorOfACombination) {
+  const JointEvidence evidence = evidence_of({"rig.json", with_effects(), {}});
+  EXPECT_TRUE(evidence.boards.empty());
+  ASSERT_EQ(evidence.priors.size(), 1u);
+  EXPECT_EQ(evidence.priors[0].covariance.matrix, with_effects().covariance->matrix);
+}
+
+/// The covariance of rig and pose of one frame by the inverse of the whole normal matrix of rig,
+/// warp and poses, weighted by V⁻¹, and by the chain.
+TEST(Effects, OfTheBoardsGivenTheRigAreTheInverseOfAllEquations) {
+  for (const bool shape : {false, true}) {
+    const RigEstimate& e = with_effects();
+    const CalibrationEvidence& evidence = *e.evidence;
+    CalibrationEffects effects = *e.calibration->effects;
+    if (!shape) effects.shape_m.clear();
+    const BoardState state{e.rig, evidence.frames, evidence.T_first_board, {0, 0}};
+    const double sigma = 0.1;
+    const ConditionalBoardPoses poses =
+        conditional_board_poses(evidence.observations, state, effects, sigma);
+    BoardObservations shaped = evidence.observations;
+    for (std::size_t i = 0; i < effects.shape_m.size(); ++i) {
+      shaped.target_m[i] += effects.shape_m[i];
+    }
+    const Eigen::Index n = parameter_count(e.rig);
+    const std::vector<FrameRows> rows = frame_rows(shaped, state, Eigen::MatrixXd::Identity(n, n),
+                                                   shape ? BoardWarp::free : BoardWarp::known);
+    const Eigen::Index shared = rows[0].by_rig.cols();
+    const auto frames = static_cast<Eigen::Index>(rows.size());
+    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(shared + 6 * frames, shared + 6 * frames);
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      const FrameRows& frame = rows[static_cast<std::size_t>(f)];
+      Eigen::MatrixXd J = Eigen::MatrixXd::Zero(frame.residual_px.size(), N.cols());
+      J.leftCols(shared) = frame.by_rig;
+      J.middleCols<6>(shared + 6 * f) = frame.by_pose;
+      const Eigen::MatrixXd V =
+          corner_covariance(frame, noise_of(effects), evidence.observations.target_m);
+      N += J.transpose() * V.ldlt().solve(J);
+    }
+    const Eigen::VectorXd scale = N.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd C = scale.asDiagonal() *
+                              Eigen::MatrixXd(scale.asDiagonal() * N * scale.asDiagonal())
+                                  .ldlt()
+                                  .solve(Eigen::MatrixXd::Identity(N.rows(), N.cols())) *
+                              scale.asDiagonal();
+    const Eigen::MatrixXd C_rig = C.topLeftCorner(n, n);
+    for (const Eigen::Index f : {Eigen::Index{0}, frames - 1}) {
+      const auto& given = poses.frames[static_cast<std::size_t>(f)];
+      const Eigen::MatrixXd by_rig = given.by_rig + given.by_warp * poses.warp_by_rig;
+      const Eigen::MatrixXd own = given.factor * given.factor.transpose() +
+                                  given.by_warp * poses.warp_factor *
+                                      poses.warp_factor.transpose() * given.by_warp.transpose();
+      const Eigen::Index at = shared + 6 * f;
+      const Eigen::MatrixXd expected = C.block(at, at, 6, 6);
+      const Eigen::MatrixXd chain = by_rig * C_rig * by_rig.transpose() + sigma * sigma * own;
+      EXPECT_LT((chain - expected).norm(), 1e-7 * expected.norm()) << shape << f;
+      const Eigen::MatrixXd cross = by_rig * C_rig - C.block(at, 0, 6, n);
+      EXPECT_LT(cross.norm(), 1e-7 * C.block(at, 0, 6, n).norm()) << shape << f;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -131,10 +131,10 @@ EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& opt
   return test;
 }
 
-RigEstimate calibrate_with_found_effects(const BoardObservations& observations,
-                                         CalibrationOptions& options,
-                                         EffectsTest& test) {
-  RigEstimate usual = calibrate(observations, options);
+RigEstimate with_found_effects(RigEstimate usual,
+                               const BoardObservations& observations,
+                               CalibrationOptions& options,
+                               EffectsTest& test) {
   const auto keep_usual = [&](const std::string& why) {
     options.board_shape = options.motion = false;
     usual.calibration->warnings.push_back("calibrated without the board's shape and motion: " +

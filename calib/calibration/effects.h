@@ -49,10 +49,12 @@ struct EffectsTest {
 /// points (it takes long), of doubtful calibrations, nor where the options leave effects no place.
 EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options);
 
-/// calibrate() with the effects that the test finds, which are then set in the options, as the test
-/// is. Without effects, with a warning, where they lead to no trustworthy minimum.
-RigEstimate calibrate_with_found_effects(const BoardObservations& observations,
-                                         CalibrationOptions& options,
-                                         EffectsTest& test);
+/// `usual`, a calibration of the observations without effects, with those that the test finds, which
+/// are then set in the options, as the test is. `usual` itself, with a warning, where they lead to
+/// no trustworthy minimum.
+RigEstimate with_found_effects(RigEstimate usual,
+                               const BoardObservations& observations,
+                               CalibrationOptions& options,
+                               EffectsTest& test);
 
 }  // namespace vernier::internal

@@ -7,11 +7,9 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "calib/board_observations.h"
 #include "calib/calibration/effects.h"
-#include "calib/calibration/solve_again.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
@@ -19,6 +17,7 @@
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/calibrate_pairs.h"
 #include "cli/calibration/component_test.h"
+#include "cli/calibration/found_effects.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -120,15 +119,11 @@ void run(const CalibrateArguments& options, Session& session) {
   check_output_is_not_input(files_named(options.board), options.output);
   check_output_is_not_input({options.solver.prior}, options.output);
   CalibrationOptions calibration = calibration_options(options.solver, session);
-  BoardObservations observations = load(options.board, session);
-  EffectsTest test;
-  RigEstimate estimate = options.solver.looks_for_effects()
-                             ? calibrate_with_found_effects(observations, calibration, test)
-                             : calibrate(std::move(observations), calibration);
-  calibration.board_shape = calibration.motion = false;  // lens models are compared without
-  ModelComparison comparison;
+  const BoardObservations observations = load(options.board, session);
+  auto [estimate, comparison, test] = calibrate_and_look(
+      observations, calibration,
+      {.effects = options.solver.looks_for_effects(), .models = !options.no_model_check});
   if (!options.no_model_check) {
-    comparison = compare_models(without_effects(estimate), calibration);
     std::vector<std::string>& warnings = estimate.calibration->warnings;
     warnings.insert(warnings.end(), comparison.warnings.begin(), comparison.warnings.end());
     if (!comparison.not_compared.empty()) {

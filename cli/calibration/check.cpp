@@ -15,7 +15,6 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/calibration_problem.h"
-#include "calib/calibration/effects.h"
 #include "calib/calibration/solve_again.h"
 #include "calib/camera.h"
 #include "calib/camera/model_nesting.h"
@@ -33,6 +32,7 @@
 #include "cli/calibration/check_mrcal.h"
 #include "cli/calibration/check_noise.h"
 #include "cli/calibration/check_section.h"
+#include "cli/calibration/found_effects.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
@@ -157,14 +157,11 @@ Solved solve(const CheckArguments& options, Session& session) {
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   refuse_prior(options, solved.how);
-  BoardObservations observations = load(options.board, session);
+  const BoardObservations observations = load(options.board, session);
   check_splits(options, observations);
-  if (options.solver.looks_for_effects()) {
-    EffectsTest test;
-    solved.estimate = calibrate_with_found_effects(observations, solved.how, test);
-  } else {
-    solved.estimate = calibrate(std::move(observations), solved.how);
-  }
+  const bool look = options.solver.looks_for_effects();
+  solved.estimate =
+      calibrate_and_look(observations, solved.how, {.effects = look, .models = look}).estimate;
   for (const std::string& warning : solved.estimate.calibration->trust_warnings)
     session.add_trust_warning(warning);
   return solved;

@@ -51,10 +51,16 @@ const RigEstimate& with_effects() {
   return estimate;
 }
 
+RigEstimate found_in(const BoardObservations& observations,
+                     CalibrationOptions& options,
+                     EffectsTest& test) {
+  return with_found_effects(calibrate(observations, options), observations, options, test);
+}
+
 TEST(Effects, AreFoundWhereTheyAre) {
   CalibrationOptions options{.reject_outliers = false, .check_input = false};
   EffectsTest test;
-  const RigEstimate found = calibrate_with_found_effects(corners(hand_held), options, test);
+  const RigEstimate found = found_in(corners(hand_held), options, test);
   EXPECT_TRUE(options.board_shape && options.motion);
   EXPECT_TRUE(test.has_shape() && test.has_motion());
   EXPECT_EQ(parameters(found.rig), parameters(with_effects().rig));
@@ -65,7 +71,7 @@ TEST(Effects, AreLeftOutWhereTheyAreNot) {
   const BoardObservations white = corners({.white_px = 0.1});
   CalibrationOptions options{.reject_outliers = false, .check_input = false};
   EffectsTest test;
-  const RigEstimate found = calibrate_with_found_effects(white, options, test);
+  const RigEstimate found = found_in(white, options, test);
   EXPECT_FALSE(options.board_shape || options.motion);
   EXPECT_TRUE(test.shape && test.motion && test.not_tested.empty());
   EXPECT_FALSE(found.calibration->effects);
@@ -78,7 +84,7 @@ TEST(Effects, OfABoardThatOnlyMovesAreItsMotion) {
   noise.shape_plane_m = noise.shape_height_m = 0;
   CalibrationOptions options{.reject_outliers = false, .check_input = false};
   EffectsTest test;
-  const RigEstimate found = calibrate_with_found_effects(corners(noise), options, test);
+  const RigEstimate found = found_in(corners(noise), options, test);
   EXPECT_TRUE(options.motion);
   EXPECT_FALSE(options.board_shape);
   EXPECT_TRUE(found.calibration->effects->shape_m.empty());
@@ -88,7 +94,7 @@ TEST(Effects, AreNotLookedForWhereTheyHaveNoPlace) {
   const auto reason = [](CalibrationOptions options, int frames) {
     options.check_input = options.reject_outliers = false;
     EffectsTest test;
-    calibrate_with_found_effects(corners(hand_held, frames), options, test);
+    found_in(corners(hand_held, frames), options, test);
     EXPECT_FALSE(options.board_shape || options.motion);
     return test.not_tested;
   };

@@ -92,8 +92,8 @@ class NoiseCost : public ceres::FirstOrderFunction {
 
 CornerNoise default_start(const RestrictedLikelihood& likelihood, double spacing_m) {
   // with little else, white noise alone has the residuals' size
-  CornerNoise unit{1, 0, spacing_m, 0, 0, 1e-9, 1e-9};
-  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::gradient);
+  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9};
+  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::step);
   const double dof = static_cast<double>(likelihood.coordinates()) -
                      6.0 * static_cast<double>(likelihood.frames()) -
                      static_cast<double>(likelihood.rig_directions());

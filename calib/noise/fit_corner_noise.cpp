@@ -20,11 +20,10 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double prior_precision = 1e-2;        // of each logarithm about its start: σ = 10
-constexpr double largest_gradient = 0.05;       // of half −2 l, a unit of a logarithm
 constexpr double shortest = 0.5, longest = 20;  // spacings, of the field
 
-/// −2 l relative to the start, half of it, with the weak prior. The length is x mapped into its
-/// range by a logistic function.
+/// −2 l relative to the first evaluation, half of it, with the weak prior. The length is x mapped
+/// into its range by a logistic function.
 class NoiseCost : public ceres::FirstOrderFunction {
  public:
   NoiseCost(const RestrictedLikelihood& likelihood, double spacing_m, const CornerNoise& start)
@@ -32,24 +31,22 @@ class NoiseCost : public ceres::FirstOrderFunction {
         start_(likelihood.logs(start)),
         low_(std::log(shortest * spacing_m)),
         width_(std::log(longest / shortest)),
-        best_(VectorXd::Zero(start_.size())) {
-    at_start_ = likelihood_.at(start, RestrictedLikelihood::Want::gradient).minus_two_log;
-  }
+        best_(VectorXd::Zero(start_.size())) {}
 
   bool Evaluate(const double* x, double* cost, double* gradient) const override {
     const Eigen::Map<const VectorXd> unknowns(x, start_.size());
     try {
       const NoiseSolution s =
           likelihood_.at(noise_at(unknowns), RestrictedLikelihood::Want::gradient);
-      *cost = 0.5 * (s.minus_two_log - at_start_ + prior_precision * unknowns.squaredNorm());
-      if (gradient) {
-        Eigen::Map<VectorXd> g(gradient, start_.size());
-        g = 0.5 * s.gradient + prior_precision * unknowns;
-        if (likelihood_.parts().field) g[2] += 0.5 * s.gradient[2] * (length_slope(x[2]) - 1);
-      }
+      if (best_cost_ == HUGE_VAL) at_first_ = s.minus_two_log;
+      *cost = 0.5 * (s.minus_two_log - at_first_ + prior_precision * unknowns.squaredNorm());
+      VectorXd g = 0.5 * s.gradient + prior_precision * unknowns;
+      if (likelihood_.parts().field) g[2] += 0.5 * s.gradient[2] * (length_slope(x[2]) - 1);
+      if (gradient) Eigen::Map<VectorXd>(gradient, start_.size()) = g;
       if (*cost < best_cost_) {
         best_cost_ = *cost;
         best_ = unknowns;
+        gradient_at_best_ = g.cwiseAbs().maxCoeff();
       }
       return std::isfinite(*cost);
     } catch (const Error&) {
@@ -60,13 +57,8 @@ class NoiseCost : public ceres::FirstOrderFunction {
 
   /// The unknowns of the least cost so far.
   const VectorXd& best() const { return best_; }
-  /// The largest element of the gradient.
-  double gradient_at(const VectorXd& unknowns) const {
-    VectorXd gradient(unknowns.size());
-    double value = 0;
-    if (!Evaluate(unknowns.data(), &value, gradient.data())) return HUGE_VAL;
-    return gradient.cwiseAbs().maxCoeff();
-  }
+  /// The largest element of the gradient there.
+  double gradient_at_best() const { return gradient_at_best_; }
 
   CornerNoise noise_at(const VectorXd& unknowns) const {
     VectorXd logs = start_ + unknowns.cwiseMax(-20.0).cwiseMin(20.0);
@@ -85,15 +77,16 @@ class NoiseCost : public ceres::FirstOrderFunction {
 
   const RestrictedLikelihood& likelihood_;
   VectorXd start_;
-  double low_, width_, at_start_ = 0;
+  double low_, width_;
+  mutable double at_first_ = 0;
   mutable VectorXd best_;  // Ceres evaluates one point at a time
-  mutable double best_cost_ = HUGE_VAL;
+  mutable double best_cost_ = HUGE_VAL, gradient_at_best_ = HUGE_VAL;
 };
 
 CornerNoise default_start(const RestrictedLikelihood& likelihood, double spacing_m) {
   // with little else, white noise alone has the residuals' size
-  CornerNoise unit{1, 0, spacing_m, 0, 0, 1e-9, 1e-9};
-  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::gradient);
+  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9};
+  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::step);
   const double dof = static_cast<double>(likelihood.coordinates()) -
                      6.0 * static_cast<double>(likelihood.frames()) -
                      static_cast<double>(likelihood.rig_directions());
@@ -120,7 +113,8 @@ ComponentTest two_variances_test(double minus_two_log, double minus_two_log_with
 
 NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           double spacing_m,
-                          const std::optional<CornerNoise>& start) {
+                          const std::optional<CornerNoise>& start,
+                          double largest_gradient) {
   const CornerNoise from = start ? *start : default_start(likelihood, spacing_m);
   auto* cost = new NoiseCost(likelihood, spacing_m, from);  // owned by the problem
   const ceres::GradientProblem problem(cost);
@@ -129,7 +123,7 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = 100;
   options.function_tolerance = 1e-10;
-  options.gradient_tolerance = 1e-3;
+  options.gradient_tolerance = largest_gradient;
   options.parameter_tolerance = 1e-6;
   options.logging_type = ceres::SILENT;
   NoiseFit fit;
@@ -138,7 +132,7 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
     ceres::Solve(options, problem, x.data(), &summary);
     x = cost->best();  // a line search that fails returns to its start
     fit.iterations += static_cast<int>(summary.iterations.size());
-    fit.converged = cost->gradient_at(x) < largest_gradient;
+    fit.converged = cost->gradient_at_best() <= largest_gradient;
   }
   fit.noise = cost->noise_at(x);
   fit.parts = likelihood.parts();

@@ -23,10 +23,13 @@ struct NoiseFit {
 /// line search (Nocedal and Wright 2006, chapters 3 and 6; Ceres), from `start` or, without one,
 /// from the size of the residuals. A component that is not there runs towards zero; a weak prior
 /// (three powers of ten or more for each component) keeps it finite. Lengths of the field stay
-/// between half and twenty spacings of the board's points.
+/// between half and twenty spacings of the board's points. It ends where no element of the gradient
+/// of −l by the logarithms is above `largest_gradient`: at the curvature of a component that
+/// matters, some 10 and more, its logarithm is then known to a thousandth.
 NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           double spacing_m,
-                          const std::optional<CornerNoise>& start = {});
+                          const std::optional<CornerNoise>& start = {},
+                          double largest_gradient = 0.005);
 
 /// The test that a group of components is absent, by twice the ratio of restricted likelihoods. On
 /// the boundary of the parameters it is, for white noise alone, at most as large as a mixture of

@@ -3,6 +3,7 @@
 #include "calib/noise/random_effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -30,9 +31,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double settled_sigmas = 1e-5;  // length of the last step, of rig and shape
 constexpr int most_steps = 12;
-constexpr int rounds = 3;  // of components and minimum
+
+/// A round of components and minimum.
+struct Round {
+  bool second_start;        ///< of the components
+  double largest_gradient;  ///< of the likelihood by their logarithms
+  double settled_sigmas;    ///< length of the last step, of rig and shape
+};
+
+/// The likelihood can have more than one maximum, and that at the usual minimum is not yet the one
+/// to look at: there the shape is in the residuals of all frames. Roughly twice, then to the end.
+constexpr std::array<Round, 3> rounds{
+    {{false, 0.005, 0.05}, {true, 0.005, 0.05}, {false, 0.005, 1e-5}}};
 
 class EffectsProblem {
  public:
@@ -101,15 +112,16 @@ void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimu
   z.prior_information = M.transpose() * all.prior_information * M;
 }
 
-/// The likelihood can have more than one maximum: from the last components and from the usual
-/// start.
+/// From the last components if there are any, and from the usual start without them or if a second
+/// start is wanted.
 NoiseFit best_fit(const RestrictedLikelihood& likelihood,
                   double spacing_m,
-                  const std::optional<CornerNoise>& last) {
-  NoiseFit fit = fit_corner_noise(likelihood, spacing_m);
-  if (!last) return fit;
-  NoiseFit from_last = fit_corner_noise(likelihood, spacing_m, last);
-  return from_last.solution.minus_two_log <= fit.solution.minus_two_log ? from_last : fit;
+                  const std::optional<CornerNoise>& last,
+                  const Round& round) {
+  NoiseFit fit = fit_corner_noise(likelihood, spacing_m, last, round.largest_gradient);
+  if (!last || !round.second_start) return fit;
+  NoiseFit other = fit_corner_noise(likelihood, spacing_m, {}, round.largest_gradient);
+  return fit.solution.minus_two_log <= other.solution.minus_two_log ? fit : other;
 }
 
 }  // namespace
@@ -129,15 +141,15 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
     result.shape_m = VectorXd::Zero(3 * static_cast<Index>(observations.target_m.size()));
   }
   std::optional<CornerNoise> last;
-  for (int round = 0; round < rounds; ++round) {
-    result.noise = best_fit(problem.at(result.state, result.shape_m), spacing_m, last);
+  for (const Round& round : rounds) {
+    result.noise = best_fit(problem.at(result.state, result.shape_m), spacing_m, last, round);
     last = result.noise.noise;
     result.converged = false;
     for (int i = 0; i < most_steps && !result.converged; ++i) {
       const NoiseSolution s =
           problem.at(result.state, result.shape_m).at(*last, RestrictedLikelihood::Want::step);
       const double length = move(s, problem.free(result.state.rig), result.state, result.shape_m);
-      result.converged = length < settled_sigmas;
+      result.converged = length < round.settled_sigmas;
     }
   }
   result.noise.solution = problem.at(result.state, result.shape_m)

@@ -3,16 +3,17 @@
 #include "calib/noise/restricted_likelihood.h"
 
 #include <cmath>
-#include <string>
+#include <cstddef>
 #include <utility>
 
 #include "calib/base/decompositions.h"
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
-#include "calib/noise/field_spectrum.h"
 #include "calib/noise/frame_rows.h"
+#include "calib/noise/likelihood_gradient.h"
+#include "calib/noise/linear_frames.h"
+#include "calib/noise/mixed_model.h"
 #include "calib/noise/rig_knowledge.h"
-#include "calib/noise/rotated_frame.h"
 #include "calib/noise/scaled_factor.h"
 #include "calib/solver/normal_equations.h"
 
@@ -22,36 +23,32 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-RestrictedLikelihood::RestrictedLikelihood(std::vector<FrameRows> frames,
+namespace {
+
+NoiseParts with_motion_if_seen(NoiseParts parts, const std::vector<FrameRows>& frames) {
+  if (!frames.empty() && frames[0].by_motion.cols() == 0) parts.motion = false;
+  return parts;
+}
+
+}  // namespace
+
+RestrictedLikelihood::RestrictedLikelihood(const std::vector<FrameRows>& frames,
                                            const std::vector<Eigen::Vector3d>& target_m,
                                            NoiseParts parts,
                                            RigKnowledge prior,
-                                           Eigen::VectorXd shape_m)
-    : parts_(parts), prior_(std::move(prior)), shape_m_(std::move(shape_m)) {
-  std::map<std::vector<int>, std::size_t> sets;
-  for (FrameRows& rows : frames) {
-    if (rows.views.empty()) throw Error("corner noise", "a frame without views", "leave it out");
-    Frame frame{std::move(rows), {}};
-    for (const ViewRows& view : frame.rows.views) {
-      const auto [at, is_new] = sets.try_emplace(view.ids, point_sets_.size());
-      if (is_new) {
-        auto& points = point_sets_.emplace_back();
-        for (const int id : view.ids) points.push_back(target_m[static_cast<std::size_t>(id)]);
-      }
-      frame.spectra.push_back(at->second);
-    }
-    frames_.push_back(std::move(frame));
-  }
-  if (frames_.empty()) throw Error("corner noise", "no frames", "give views of a board");
-  rig_ = frames_[0].rows.by_rig.cols();
-  if (frames_[0].rows.by_motion.cols() == 0) parts_.motion = false;
-  if (parts_.shape) shape_ = 3 * static_cast<Index>(target_m.size());
-  if (shape_m_.size() == 0) shape_m_ = VectorXd::Zero(shape_);
+                                           VectorXd shape_m)
+    : parts_(with_motion_if_seen(parts, frames)),
+      prior_(std::move(prior)),
+      shape_m_(std::move(shape_m)),
+      linear_(frames, target_m, parts_) {
+  if (shape_m_.size() == 0) shape_m_ = VectorXd::Zero(linear_.unknowns.shape);
 }
 
 Index RestrictedLikelihood::coordinates() const {
   Index sum = 0;
-  for (const Frame& frame : frames_) sum += frame.rows.residual_px.size();
+  for (const PointSet& set : linear_.sets) {
+    sum += set.coordinates * static_cast<Index>(set.ids.size());
+  }
   return sum;
 }
 
@@ -81,18 +78,19 @@ CornerNoise RestrictedLikelihood::noise(const VectorXd& logs) const {
   return noise;
 }
 
-std::vector<FieldSpectrum> RestrictedLikelihood::spectra_at(const CornerNoise& noise) const {
-  std::vector<FieldSpectrum> spectra;
-  for (std::size_t s = 0; parts_.field && s < point_sets_.size(); ++s) {
-    spectra.push_back(field_spectrum(point_sets_[s], noise.field_length_m));
+VectorXd RestrictedLikelihood::shape_variances(const CornerNoise& noise) const {
+  VectorXd variances(linear_.unknowns.shape);
+  for (Index i = 0; i < variances.size(); ++i) {
+    const double s = i % 3 < 2 ? noise.shape_plane_m : noise.shape_height_m;
+    variances[i] = s * s;
   }
-  return spectra;
+  return variances;
 }
 
-VectorXd RestrictedLikelihood::shape_variances(const CornerNoise& noise) const {
-  VectorXd variances(shape_);
-  for (Index i = 0; i < shape_; ++i) {
-    const double s = i % 3 < 2 ? noise.shape_plane_m : noise.shape_height_m;
+VectorXd RestrictedLikelihood::motion_variances(const CornerNoise& noise) const {
+  VectorXd variances(linear_.unknowns.motion);
+  for (Index i = 0; i < variances.size(); ++i) {
+    const double s = i % 6 < 3 ? noise.motion_rad : noise.motion_m;
     variances[i] = s * s;
   }
   return variances;
@@ -100,158 +98,176 @@ VectorXd RestrictedLikelihood::shape_variances(const CornerNoise& noise) const {
 
 namespace {
 
-/// tr(Uᵀ K' U P_ff) − eᵀ Uᵀ K' U e over the views: the derivative by ln ℓ over g².
-double by_log_length(const FrameRows& rows,
-                     const RotatedFrame& f,
-                     const VectorXd& e,
-                     const std::vector<const FieldSpectrum*>& spectra) {
-  double sum = 0;
-  for (std::size_t v = 0; v < rows.views.size(); ++v) {
-    const MatrixXd& by = spectra[v]->by_log_length;
-    const Index n = by.rows();
-    for (int uv = 0; uv < 2; ++uv) {
-      const Index first = rows.views[v].first + uv * n;
-      const MatrixXd Z = f.Z.middleRows(first, n);
-      const VectorXd part = e.segment(first, n);
-      sum += f.weights.segment(first, n).dot(by.diagonal()) - (by * Z).cwiseProduct(Z).sum() -
-             part.dot(by * part);
-    }
+/// Of the further cameras in a frame that another sees too. The residuals are predictions minus
+/// pixels, so that a motion u adds −M u to them. Of the fixed effect β = −G⁻¹ h, with G = Mᵀ P M
+/// and h = Mᵀ P r = −Σ_x⁻¹ û, the covariance is G⁻¹, and G⁻¹ − Σ_x if nothing moved in this frame.
+void add_motions(const LinearFrame& linear,
+                 const FrameEquations& frame,
+                 const Unknowns& unknowns,
+                 const ScaledFactor& S,
+                 const VectorXd& z,
+                 const VectorXd& variances,
+                 std::vector<FrameMotion>& motions) {
+  if (linear.views.size() < 2) return;
+  const VectorXd predicted = frame.own(unknowns, z);
+  const MatrixXd XWX =
+      frame.products.block(unknowns.rig, unknowns.rig, unknowns.own(), unknowns.own());
+  for (const LinearView& view : linear.views) {
+    if (view.camera == 0) continue;
+    const Index at = 6 * (view.camera - 1);
+    const auto XWM = XWX.middleCols<6>(at);
+    const MatrixXd TXWM = frame.T.solve(MatrixXd(XWM));
+    const MatrixXd AQM = frame.H.middleCols<6>(at) - frame.H * TXWM;
+    const MatrixXd G =
+        XWX.block<6, 6>(at, at) - XWM.transpose() * TXWM - AQM.transpose() * S.solve(AQM);
+    const Eigen::Matrix<double, 6, 1> s = variances.segment<6>(at);
+    FrameMotion& motion = motions.emplace_back();
+    motion.frame = linear.frame;
+    motion.camera = view.camera;
+    motion.predicted = predicted.segment<6>(at);
+    MatrixXd C = solve_symmetric(G, MatrixXd(MatrixXd::Identity(6, 6)));
+    const VectorXd beta = C * motion.predicted.cwiseQuotient(s);
+    C.diagonal() -= s;
+    motion.chi2 = beta.dot(solve_symmetric(C, beta));
   }
-  return sum;
-}
-
-/// The motion of one frame and camera by G = Mᵀ P M and h = Mᵀ P r. The residuals are predictions
-/// minus pixels, so that a motion u adds −M u to them. Of the fixed effect β = −G⁻¹ h the
-/// covariance is G⁻¹, and G⁻¹ − S if nothing moved in this frame.
-FrameMotion motion_of(int frame,
-                      int camera,
-                      const Eigen::Matrix<double, 6, 6>& G,
-                      const Eigen::Matrix<double, 6, 1>& h,
-                      const CornerNoise& noise) {
-  FrameMotion motion;
-  motion.frame = frame;
-  motion.camera = camera;
-  Eigen::Matrix<double, 6, 1> S;
-  S << Eigen::Vector3d::Constant(noise.motion_rad * noise.motion_rad),
-      Eigen::Vector3d::Constant(noise.motion_m * noise.motion_m);
-  motion.predicted = -S.cwiseProduct(h);
-  MatrixXd C = solve_symmetric(MatrixXd(G), MatrixXd(MatrixXd::Identity(6, 6)));
-  const VectorXd beta = C * h;
-  C.diagonal() -= S;
-  motion.chi2 = beta.dot(solve_symmetric(C, beta));
-  return motion;
 }
 
 }  // namespace
 
-void RestrictedLikelihood::add_gradient(const Frame& frame,
-                                        RotatedFrame f,
-                                        const MatrixXd& rig_columns,
-                                        const VectorXd& solution,
-                                        const std::vector<FieldSpectrum>& spectra,
-                                        const CornerNoise& noise,
-                                        NoiseSolution& result) const {
-  f.project_out(rig_columns);
-  const VectorXd e = f.Qr + f.QA * solution;  // (P r)_f
-  const VectorXd excess = f.weights - f.Z.rowwise().squaredNorm() - e.cwiseAbs2();
-  Index k = 0;
-  result.gradient[k++] += 2 * noise.white_px * noise.white_px * excess.sum();
-  if (parts_.field) {
-    result.gradient[k++] += 2 * f.field.dot(excess);
-    result.gradient[k++] +=
-        noise.field_px * noise.field_px * by_log_length(frame.rows, f, e, of_views(frame, spectra));
+/// S, without priors, with the frames' own unknowns eliminated.
+ReducedNormalEquations RestrictedLikelihood::sum_of(
+    const std::vector<FieldCovariance>& fields, const std::vector<FrameEquations>& frames) const {
+  const Unknowns& n = linear_.unknowns;
+  const auto count = static_cast<Index>(frames.size());
+  ReducedNormalEquations sum;
+  MatrixXd& S = sum.information;
+  S = MatrixXd::Zero(n.common(), n.common());
+  sum.scores.resize(n.common(), count);
+  MatrixXd HL(n.common(), n.own() * count);
+  VectorXd by_motion = VectorXd::Zero(n.common());
+  for (Index f = 0; f < count; ++f) {
+    const FrameEquations& frame = frames[static_cast<std::size_t>(f)];
+    S.topLeftCorner(n.rig, n.rig) += frame.products.topLeftCorner(n.rig, n.rig);
+    S.topRightCorner(n.rig, n.shape) += frame.by_shape.topRows(n.rig);
+    HL.middleCols(n.own() * f, n.own()) = frame.HL;
+    by_motion += frame.HL.leftCols(n.motion).rowwise().squaredNorm();
+    sum.scores.col(f) = frame.score;
+    sum.frame_chi2.push_back(frame.chi2);
+    sum.chi2 += frame.chi2;
   }
-  if (!parts_.motion) return;
-  const MatrixXd G = f.M.transpose() * f.times(f.M);
-  const VectorXd h = f.M.transpose() * e;
-  for (Index m = 0; m < h.size(); ++m) {
-    const bool turns = m % 6 < 3;
-    const double s = turns ? noise.motion_rad : noise.motion_m;
-    result.gradient[k + (turns ? 0 : 1)] += 2 * s * s * (G(m, m) - h[m] * h[m]);
+  S.bottomLeftCorner(n.shape, n.rig) = S.topRightCorner(n.rig, n.shape).transpose();
+  for (std::size_t k = 0; n.shape > 0 && k < fields.size(); ++k) {
+    const PointSet& set = linear_.sets[k];
+    add_shape_block(set.ids, set.shape_products, fields[k].inverse, n.rig, S);
   }
-  if (frame.rows.views.size() < 2) return;
-  for (const ViewRows& view : frame.rows.views) {
-    if (view.camera == 0) continue;
-    const Index at = 6 * (view.camera - 1);
-    result.motions.push_back(
-        motion_of(frame.rows.frame, view.camera, G.block<6, 6>(at, at), h.segment<6>(at), noise));
-  }
+  sum.held_poses_diagonal = S.diagonal() - by_motion;
+  S.selfadjointView<Eigen::Lower>().rankUpdate(HL, -1);
+  S.triangularView<Eigen::StrictlyUpper>() = S.transpose();
+  sum.residuals = static_cast<int>(coordinates());
+  return sum;
 }
 
-std::vector<const FieldSpectrum*> RestrictedLikelihood::of_views(
-    const Frame& frame, const std::vector<FieldSpectrum>& spectra) const {
-  std::vector<const FieldSpectrum*> of_views;
-  for (const std::size_t s : frame.spectra)
-    of_views.push_back(parts_.field ? &spectra[s] : nullptr);
-  return of_views;
+std::vector<MatrixXd> RestrictedLikelihood::frame_information(
+    const std::vector<FieldCovariance>& fields, const std::vector<FrameEquations>& frames) const {
+  const Unknowns& n = linear_.unknowns;
+  std::vector<MatrixXd> all;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    MatrixXd S = MatrixXd::Zero(n.common(), n.common());
+    S.topLeftCorner(n.rig, n.rig) = frames[f].products.topLeftCorner(n.rig, n.rig);
+    S.topRightCorner(n.rig, n.shape) = frames[f].by_shape.topRows(n.rig);
+    S.bottomLeftCorner(n.shape, n.rig) = frames[f].by_shape.topRows(n.rig).transpose();
+    for (const LinearView& view : linear_.frames[f].views) {
+      if (n.shape == 0) break;
+      add_shape_block(linear_.sets[view.set].ids, shape_products(view.by_point),
+                      fields[view.set].inverse, n.rig, S);
+    }
+    all.push_back(S - frames[f].HL * frames[f].HL.transpose());
+  }
+  return all;
 }
 
 /// Adds the terms of rig and shape: their prior, and what a shape at which the frames are
 /// linearised pulls.
-VectorXd RestrictedLikelihood::add_priors(const VectorXd& shape_variances,
-                                          ReducedNormalEquations& sum) const {
-  VectorXd score = sum.scores.rowwise().sum();
-  sum.prior_information = MatrixXd::Zero(rig_ + shape_, rig_ + shape_);
+void RestrictedLikelihood::add_priors(const VectorXd& shape_variances,
+                                      ReducedNormalEquations& sum,
+                                      VectorXd& score) const {
+  const Index common = linear_.unknowns.common(), shape = linear_.unknowns.shape;
+  sum.prior_information = MatrixXd::Zero(common, common);
   if (prior_.information.size() > 0) {
     const Index n = prior_.information.rows();
     sum.prior_information.topLeftCorner(n, n) = prior_.information;
     score.head(n) += prior_.score;
   }
-  sum.prior_information.diagonal().tail(shape_) = shape_variances.cwiseInverse();
+  sum.prior_information.diagonal().tail(shape) = shape_variances.cwiseInverse();
   sum.information += sum.prior_information;
-  score.tail(shape_) += shape_m_.cwiseQuotient(shape_variances);
-  return score;
+  score.tail(shape) += shape_m_.cwiseQuotient(shape_variances);
+}
+
+VectorXd RestrictedLikelihood::gradient(const std::vector<FieldCovariance>& fields,
+                                        const std::vector<FrameEquations>& frames,
+                                        const MatrixXd& S_inverse,
+                                        const VectorXd& z,
+                                        const CornerNoise& noise) const {
+  const LikelihoodGradient by = likelihood_gradient(linear_, fields, frames, S_inverse, z, noise);
+  VectorXd gradient(static_cast<Index>(components().size()));
+  Index k = 0;
+  gradient[k++] = by.field[0];
+  if (parts_.field) {
+    gradient[k++] = by.field[1];
+    gradient[k++] = by.field[2];
+  }
+  if (parts_.motion) {
+    gradient[k++] = by.motion[0];
+    gradient[k++] = by.motion[1];
+  }
+  if (!parts_.shape) return gradient;
+  gradient.tail<2>().setZero();
+  const Index shape = linear_.unknowns.shape;
+  const VectorXd variances = shape_variances(noise);
+  const VectorXd moments =
+      S_inverse.diagonal().tail(shape) + (shape_m_ + z.tail(shape)).cwiseAbs2();
+  for (Index i = 0; i < shape; ++i) {
+    gradient[k + (i % 3 < 2 ? 0 : 1)] += 2 * (1 - moments[i] / variances[i]);
+  }
+  return gradient;
 }
 
 NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) const {
-  const std::vector<FieldSpectrum> spectra = spectra_at(noise);
+  const Unknowns& unknowns = linear_.unknowns;
+  const VectorXd variances = shape_variances(noise), of_motion = motion_variances(noise);
+  VectorXd own_information = VectorXd::Zero(unknowns.own());
+  own_information.head(unknowns.motion) = of_motion.cwiseInverse();
+  const std::vector<FieldCovariance> fields = field_covariances(linear_.sets, noise, parts_.field);
+  std::vector<FrameEquations> frames;
   NoiseSolution result;
-  ReducedNormalEquations& sum = result.equations;
-  sum.information = MatrixXd::Zero(rig_ + shape_, rig_ + shape_);
-  sum.held_poses_diagonal = VectorXd::Zero(rig_ + shape_);
-  sum.scores = MatrixXd::Zero(rig_ + shape_, static_cast<Index>(frames_.size()));
-  std::vector<RotatedFrame> rows;
-  for (const Frame& frame : frames_) {
-    const RotatedFrame& f = rows.emplace_back(
-        rotated_frame(frame.rows, noise, of_views(frame, spectra), parts_.motion, shape_));
-    sum.frame_information.emplace_back(f.A.transpose() * f.QA);
-    sum.information += sum.frame_information.back();
-    sum.held_poses_diagonal +=
-        sum.frame_information.back().diagonal() +
-        (f.Z.rightCols<6>().transpose() * f.A).colwise().squaredNorm().transpose();
-    sum.scores.col(static_cast<Index>(rows.size()) - 1) = f.A.transpose() * f.Qr;
-    sum.frame_chi2.push_back(f.r.dot(f.Qr));
-    sum.chi2 += sum.frame_chi2.back();
-    sum.residuals += static_cast<int>(f.r.size());
-    result.minus_two_log += f.log_determinants;
+  for (const LinearFrame& frame : linear_.frames) {
+    frames.push_back(frame_equations(frame, unknowns, linear_.sets, fields, own_information));
+    result.minus_two_log += frames.back().T.log_determinant() + of_motion.array().log().sum();
   }
-  const VectorXd variances = shape_variances(noise);
-  const VectorXd score = add_priors(variances, sum);
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    result.minus_two_log += linear_.sets[k].coordinates * fields[k].log_determinant;
+  }
+  ReducedNormalEquations& sum = result.equations;
+  sum = sum_of(fields, frames);
+  VectorXd score = sum.scores.rowwise().sum();
+  add_priors(variances, sum, score);
   const ScaledFactor S(sum.information, "the rig");
   result.step = -S.solve(score);
   result.minus_two_log += S.log_determinant() + variances.array().log().sum() + sum.chi2 +
                           shape_m_.cwiseAbs2().cwiseQuotient(variances).sum() +
                           score.dot(result.step);
-  result.gradient = VectorXd::Zero(static_cast<Index>(components().size()));
-  for (std::size_t i = 0; want != Want::step && i < frames_.size(); ++i) {
-    add_gradient(frames_[i], rows[i], S.times_inverse_upper(rows[i].QA), result.step, spectra,
-                 noise, result);
-  }
-  if (parts_.shape && want != Want::step) {
-    const VectorXd spread =
-        S.inverse().diagonal().tail(shape_) + (shape_m_ + result.step.tail(shape_)).cwiseAbs2();
-    const Index at = result.gradient.size() - 2;
-    for (Index i = 0; i < shape_; ++i) {
-      result.gradient[at + (i % 3 < 2 ? 0 : 1)] += 2 * (1 - spread[i] / variances[i]);
-    }
+  if (want != Want::step) {
+    result.gradient = gradient(fields, frames, S.inverse(), result.step, noise);
   }
   if (want == Want::gradient) return result;
-  result.pose_steps.resize(6, static_cast<Index>(frames_.size()));
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const RotatedFrame& f = rows[i];
-    const VectorXd pull = f.ViB.transpose() * (f.r + f.A * result.step);
-    result.pose_steps.col(static_cast<Index>(i)) =
-        -f.pose_inverse_root * (f.pose_inverse_root.transpose() * pull);
+  result.pose_steps.resize(6, static_cast<Index>(frames.size()));
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    result.pose_steps.col(static_cast<Index>(f)) = frames[f].own(unknowns, result.step).tail<6>();
+  }
+  if (want == Want::step) return result;
+  sum.frame_information = frame_information(fields, frames);
+  for (std::size_t f = 0; parts_.motion && f < frames.size(); ++f) {
+    add_motions(linear_.frames[f], frames[f], unknowns, S, result.step, of_motion, result.motions);
   }
   return result;
 }

@@ -4,14 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <map>
 #include <vector>
 
 #include "calib/noise/corner_noise.h"
-#include "calib/noise/field_spectrum.h"
 #include "calib/noise/frame_rows.h"
+#include "calib/noise/linear_frames.h"
+#include "calib/noise/mixed_model.h"
 #include "calib/noise/rig_knowledge.h"
-#include "calib/noise/rotated_frame.h"
 #include "calib/solver/normal_equations.h"
 
 namespace vernier::internal {
@@ -46,23 +45,27 @@ struct NoiseSolution {
 ///     ∂(−2 l)/∂θ = tr(P ∂V/∂θ) − rᵀ P ∂V/∂θ P r
 ///
 /// Priors of the rig add to S, and so does that of a shape, which is a random effect: columns D_f
-/// of A with the prior variances of calib/noise/corner_noise.h. In the eigenvectors of the field
-/// (calib/noise/field_spectrum.h) each V_f is diagonal but for six columns for each further camera,
-/// and P_ff = diag − Z Zᵀ; nothing larger than corners x corners is formed.
+/// of A with the prior variances of calib/noise/corner_noise.h. It is evaluated by the mixed model
+/// equations, in which the motion is a random effect too (Graser, Smith and Tier 1987): with
+/// R = w² I + g² K of each view and coordinate and T_f of calib/noise/mixed_model.h,
+///
+///     ln|V_f| + ln|B_fᵀ V_f⁻¹ B_f| = ln|R_f| + ln|T_f| + Σ ln(s_r², s_t²)
+///
+/// so that nothing larger than S is formed.
 class RestrictedLikelihood {
  public:
   /// `target_m`: the points of the board. `shape_m`: the shape at which the frames are linearised,
   /// x, y and z of each point (empty: flat). Throws Error for frames without views, or of one
   /// camera alone if there are motions.
-  RestrictedLikelihood(std::vector<FrameRows> frames,
+  RestrictedLikelihood(const std::vector<FrameRows>& frames,
                        const std::vector<Eigen::Vector3d>& target_m,
                        NoiseParts parts,
                        RigKnowledge prior = {},
                        Eigen::VectorXd shape_m = {});
 
   const NoiseParts& parts() const { return parts_; }
-  Eigen::Index rig_directions() const { return rig_; }
-  std::size_t frames() const { return frames_.size(); }
+  Eigen::Index rig_directions() const { return linear_.unknowns.rig; }
+  std::size_t frames() const { return linear_.frames.size(); }
   Eigen::Index coordinates() const;
 
   /// Logarithms of the components that are there, in the order of CornerNoise, and back.
@@ -70,40 +73,35 @@ class RestrictedLikelihood {
   CornerNoise noise(const Eigen::VectorXd& logs) const;
 
   enum class Want {
-    gradient,  ///< no pose steps
-    step,      ///< no gradient and no motions
+    gradient,  ///< no pose steps, no motions, no information of each frame
+    step,      ///< pose steps; no gradient, no motions, no information of each frame
     solution   ///< everything
   };
-  /// Throws Error if poses or rig are not determined.
+  /// All components that are there must be above 0. Throws Error if poses or rig are not
+  /// determined.
   NoiseSolution at(const CornerNoise& noise, Want want) const;
 
  private:
-  struct Frame {
-    FrameRows rows;
-    std::vector<std::size_t> spectra;  // one per view
-  };
-
   std::vector<double CornerNoise::*> components() const;
-  std::vector<FieldSpectrum> spectra_at(const CornerNoise& noise) const;
-  std::vector<const FieldSpectrum*> of_views(const Frame& frame,
-                                             const std::vector<FieldSpectrum>& spectra) const;
   Eigen::VectorXd shape_variances(const CornerNoise& noise) const;
-  Eigen::VectorXd add_priors(const Eigen::VectorXd& shape_variances,
-                             ReducedNormalEquations& sum) const;
-  void add_gradient(const Frame& frame,
-                    RotatedFrame f,
-                    const Eigen::MatrixXd& rig_columns,
-                    const Eigen::VectorXd& solution,
-                    const std::vector<FieldSpectrum>& spectra,
-                    const CornerNoise& noise,
-                    NoiseSolution& result) const;
+  Eigen::VectorXd motion_variances(const CornerNoise& noise) const;
+  void add_priors(const Eigen::VectorXd& shape_variances,
+                  ReducedNormalEquations& sum,
+                  Eigen::VectorXd& score) const;
+  ReducedNormalEquations sum_of(const std::vector<FieldCovariance>& fields,
+                                const std::vector<FrameEquations>& frames) const;
+  std::vector<Eigen::MatrixXd> frame_information(const std::vector<FieldCovariance>& fields,
+                                                 const std::vector<FrameEquations>& frames) const;
+  Eigen::VectorXd gradient(const std::vector<FieldCovariance>& fields,
+                           const std::vector<FrameEquations>& frames,
+                           const Eigen::MatrixXd& S_inverse,
+                           const Eigen::VectorXd& z,
+                           const CornerNoise& noise) const;
 
-  std::vector<Frame> frames_;
-  std::vector<std::vector<Eigen::Vector3d>> point_sets_;  // of the corners that a view shows
   NoiseParts parts_;
   RigKnowledge prior_;
   Eigen::VectorXd shape_m_;
-  Eigen::Index rig_ = 0, shape_ = 0;
+  LinearFrames linear_;
 };
 
 }  // namespace vernier::internal

@@ -23,6 +23,10 @@ Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& b) const {
   return scale_.cwiseProduct(factor_.solve(Eigen::VectorXd(scale_.cwiseProduct(b))));
 }
 
+Eigen::MatrixXd ScaledFactor::solve(const Eigen::MatrixXd& B) const {
+  return scale_.asDiagonal() * factor_.solve(Eigen::MatrixXd(scale_.asDiagonal() * B));
+}
+
 Eigen::MatrixXd ScaledFactor::inverse() const {
   return scale_.asDiagonal() * factor_.inverse() * scale_.asDiagonal();
 }

@@ -17,6 +17,7 @@ class ScaledFactor {
 
   double log_determinant() const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
   Eigen::MatrixXd inverse() const;
   Eigen::MatrixXd times_inverse_upper(const Eigen::MatrixXd& X) const;  ///< X L⁻ᵀ
 

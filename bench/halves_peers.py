@@ -9,7 +9,7 @@ RIG.json is a stereo calibration of a flat grid with lens model opencv4 and stor
 without --no-evidence). Each split deals the frames that both cameras see whole into two halves. Every tool
 calibrates both, all with the same model and the same corners:
 
-  vernier            `vernier calibrate`
+  vernier            `vernier calibrate --no-effects`
   warp               `vernier calibrate --warp`
   shape and motion   `vernier calibrate --board-shape --motion`
   mrcal              mrcal.optimize with the settings of mrcal-calibrate-cameras: board warp, outlier
@@ -161,7 +161,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         tools = {
-            'vernier': lambda half: by_vernier(options.program, views, half, folder, []),
+            'vernier': lambda half: by_vernier(options.program, views, half, folder,
+                                               ['--no-effects']),
             'warp': lambda half: by_vernier(options.program, views, half, folder, ['--warp']),
             'shape and motion': lambda half: by_vernier(options.program, views, half, folder,
                                                         ['--board-shape', '--motion']),

@@ -45,7 +45,8 @@ struct CalibrationOptions {
 /// held parameter has no variance. If σ is estimated and there is a prior, σ and the solution are
 /// found in turn; the degrees of freedom do not count the part of the parameters that the prior
 /// determines. With random effects the rig is that of their cost (calib/noise/random_effects.h),
-/// the bound its inverse information and the covariance clustered as above; noise and residuals of
+/// the bound its inverse information and the covariance clustered as above, its small-sample form
+/// with the shape of that bound; noise and residuals of
 /// the summary stay those of the cost above. Throws Error, naming what is undetermined, if
 /// observations and prior do not determine the rig.
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options = {});

@@ -23,6 +23,7 @@
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/residual_diagnosis.h"
 #include "calib/calibration/result_checks.h"
+#include "calib/calibration/small_sample_covariance.h"
 #include "calib/calibration/view_checks.h"
 #include "calib/camera.h"
 #include "calib/camera/model_nesting.h"
@@ -373,7 +374,9 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   estimate.covariance_mvb = expand(s.bound);
   const Covariance honest =
       options.white_noise ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
-                          : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names);
+                          : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names,
+                                                      has_effects(options) ? BoundOf::random_effects
+                                                                           : BoundOf::white_noise);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
   estimate.calibration = std::move(summary);
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);

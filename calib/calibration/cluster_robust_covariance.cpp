@@ -14,14 +14,16 @@ namespace vernier::internal {
 
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
-                                     const std::vector<std::string>& names) {
+                                     const std::vector<std::string>& names,
+                                     BoundOf bound_of) {
   constexpr double frames_per_parameter = 3;
   const auto frames = static_cast<double>(equations.scores.cols());
   if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
     return {CovarianceKind::clustered, names,
             clustered_sandwich(equations, bound, frames_per_parameter)};
   }
-  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound).matrix};
+  return {CovarianceKind::jackknife, names,
+          small_sample_covariance(equations, bound, bound_of).matrix};
 }
 
 }  // namespace vernier::internal

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/calibration/small_sample_covariance.h"
 #include "calib/covariance.h"
 #include "calib/solver/normal_equations.h"
 
@@ -16,6 +17,7 @@ namespace vernier::internal {
 /// of the equations' information. Throws Error for fewer than three clusters.
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
-                                     const std::vector<std::string>& names);
+                                     const std::vector<std::string>& names,
+                                     BoundOf bound_of = BoundOf::white_noise);
 
 }  // namespace vernier::internal

@@ -49,9 +49,9 @@ struct EffectsTest {
 /// points (it takes long), of doubtful calibrations, nor where the options leave effects no place.
 EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options);
 
-/// `usual`, a calibration of the observations without effects, with those that the test finds, which
-/// are then set in the options, as the test is. `usual` itself, with a warning, where they lead to
-/// no trustworthy minimum.
+/// `usual`, a calibration of the observations without effects, with those that the test finds,
+/// which are then set in the options, as the test is. `usual` itself, with a warning, where they
+/// lead to no trustworthy minimum.
 RigEstimate with_found_effects(RigEstimate usual,
                                const BoardObservations& observations,
                                CalibrationOptions& options,

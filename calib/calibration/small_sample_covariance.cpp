@@ -39,7 +39,8 @@ double shrinkage_intensity(const Eigen::MatrixXd& pulls,
 }  // namespace
 
 SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
-                                              const Eigen::MatrixXd& bound) {
+                                              const Eigen::MatrixXd& bound,
+                                              BoundOf bound_of) {
   const auto p = bound.rows();
   const auto frames = static_cast<Eigen::Index>(equations.frame_information.size());
   if (frames < 3) {
@@ -60,8 +61,10 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
   const Eigen::MatrixXd J = pulls * pulls.transpose();
   SmallSampleCovariance result;
   result.inflation = J.trace() / std::max(data_share.trace(), 1e-9);
+  const bool effects = bound_of == BoundOf::random_effects;
+  if (effects) result.inflation = std::max(1.0, result.inflation);
   const Eigen::MatrixXd target = result.inflation * data_share;
-  result.shrinkage = shrinkage_intensity(pulls, J, target);
+  result.shrinkage = effects ? 1 : shrinkage_intensity(pulls, J, target);
   const Eigen::MatrixXd shrunk =
       (1 - result.shrinkage) * J + result.shrinkage * target + prior_share;
   result.matrix = L * shrunk * L.transpose();

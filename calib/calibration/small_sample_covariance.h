@@ -8,6 +8,9 @@
 
 namespace vernier::internal {
 
+/// What noise a minimum variance bound is of.
+enum class BoundOf { white_noise, random_effects };
+
 /// Covariance for few views with correlated residuals within a view.
 struct SmallSampleCovariance {
   Eigen::MatrixXd matrix;
@@ -29,7 +32,12 @@ struct SmallSampleCovariance {
 /// intensity of Ledoit and Wolf (2004), from the scatter of the views. A prior of information P has
 /// the fraction G = Lᵀ P L: then the shrinkage target uses I − G instead of I and p − tr G instead
 /// of p, and G is added. Needs at least three frames (else Error).
+///
+/// With random effects the bound already has what the coordinates of a frame share, and is nearly
+/// the truth where J, of a few frames, is far from it in most directions: then α = 1 and tr J / p
+/// is taken as 1 where it is less.
 SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
-                                              const Eigen::MatrixXd& bound);
+                                              const Eigen::MatrixXd& bound,
+                                              BoundOf bound_of = BoundOf::white_noise);
 
 }  // namespace vernier::internal

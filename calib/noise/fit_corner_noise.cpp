@@ -27,7 +27,7 @@ constexpr double long_field = 6;  // spacings, of the second start
 
 /// Half of −2 l with the weak prior, its gradient and its information by the unknowns.
 struct CostAt {
-  double value = HUGE_VAL;
+  double value = HUGE_VAL, minus_two_log = HUGE_VAL;
   VectorXd gradient;
   MatrixXd information;
 
@@ -66,6 +66,7 @@ class NoiseCost {
       cost.information.diagonal().array() += prior_precision;
       const double value = 0.5 * (s.minus_two_log + prior_precision * unknowns.squaredNorm());
       if (std::isfinite(value)) cost.value = value;
+      cost.minus_two_log = s.minus_two_log;
     } catch (const Error&) {
     }
     return cost;
@@ -93,6 +94,7 @@ class NoiseCost {
   double low_, width_;
 };
 
+/// Of the solution −2 l alone.
 NoiseFit fit_from(const RestrictedLikelihood& likelihood,
                   double spacing_m,
                   const CornerNoise& start,
@@ -119,7 +121,7 @@ NoiseFit fit_from(const RestrictedLikelihood& likelihood,
   }
   fit.noise = cost.noise_at(x);
   fit.parts = likelihood.parts();
-  fit.solution = likelihood.at(fit.noise, RestrictedLikelihood::Want::solution);
+  fit.solution.minus_two_log = here.minus_two_log;
   return fit;
 }
 
@@ -157,12 +159,15 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           double spacing_m,
                           const std::optional<CornerNoise>& start,
                           double least_gain) {
-  if (start) return fit_from(likelihood, spacing_m, *start, least_gain);
-  NoiseFit best = fit_from(likelihood, spacing_m, usual_start(likelihood, spacing_m), least_gain);
-  if (!likelihood.parts().field) return best;
-  NoiseFit other =
-      fit_from(likelihood, spacing_m, usual_start(likelihood, spacing_m, long_field), least_gain);
-  return other.solution.minus_two_log < best.solution.minus_two_log ? other : best;
+  NoiseFit best = fit_from(likelihood, spacing_m,
+                           start ? *start : usual_start(likelihood, spacing_m), least_gain);
+  if (!start && likelihood.parts().field) {
+    NoiseFit other =
+        fit_from(likelihood, spacing_m, usual_start(likelihood, spacing_m, long_field), least_gain);
+    if (other.solution.minus_two_log < best.solution.minus_two_log) best = std::move(other);
+  }
+  best.solution = likelihood.at(best.noise, RestrictedLikelihood::Want::solution);
+  return best;
 }
 
 ComponentTest motion_test(double minus_two_log, double minus_two_log_without) {

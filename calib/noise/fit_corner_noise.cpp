@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/noise/fit_corner_noise.h"
 
-#include <ceres/first_order_function.h>
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "calib/base/decompositions.h"
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/restricted_likelihood.h"
@@ -17,54 +15,70 @@
 namespace vernier::internal {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double prior_precision = 1e-2;        // of each logarithm about its start: σ = 10
 constexpr double shortest = 0.5, longest = 20;  // spacings, of the field
+constexpr double longest_step = 2;              // of a logarithm
+constexpr double first_damping = 0.1, least_damping = 0.03, most_damping = 1e8;
+constexpr int most_iterations = 200;
+constexpr double long_field = 6;  // spacings, of the second start
 
-/// −2 l relative to the first evaluation, half of it, with the weak prior. The length is x mapped
-/// into its range by a logistic function.
-class NoiseCost : public ceres::FirstOrderFunction {
+/// Half of −2 l with the weak prior, its gradient and its information by the unknowns.
+struct CostAt {
+  double value = HUGE_VAL, minus_two_log = HUGE_VAL;
+  VectorXd gradient;
+  MatrixXd information;
+
+  /// −H⁻¹ g with the information's diagonal raised by `damping`, which holds back components that
+  /// are hardly there; no element is above `longest_step`.
+  VectorXd step(double damping) const {
+    MatrixXd H = information;
+    H.diagonal().array() += damping;
+    const VectorXd step = -solve_symmetric(H, gradient);
+    return step * std::min(1.0, longest_step / step.cwiseAbs().maxCoeff());
+  }
+  /// What −2 l would still fall by, were it quadratic.
+  double gain() const { return gradient.dot(solve_symmetric(information, gradient)); }
+};
+
+/// The unknowns are logarithms relative to the start; the length's is mapped into its range by a
+/// logistic function.
+class NoiseCost {
  public:
   NoiseCost(const RestrictedLikelihood& likelihood, double spacing_m, const CornerNoise& start)
       : likelihood_(likelihood),
         start_(likelihood.logs(start)),
         low_(std::log(shortest * spacing_m)),
-        width_(std::log(longest / shortest)),
-        best_(VectorXd::Zero(start_.size())) {}
+        width_(std::log(longest / shortest)) {}
 
-  bool Evaluate(const double* x, double* cost, double* gradient) const override {
-    const Eigen::Map<const VectorXd> unknowns(x, start_.size());
+  /// Infinite where the likelihood cannot be had.
+  CostAt at(const VectorXd& unknowns) const {
+    CostAt cost;
     try {
       const NoiseSolution s =
           likelihood_.at(noise_at(unknowns), RestrictedLikelihood::Want::gradient);
-      if (best_cost_ == HUGE_VAL) at_first_ = s.minus_two_log;
-      *cost = 0.5 * (s.minus_two_log - at_first_ + prior_precision * unknowns.squaredNorm());
-      VectorXd g = 0.5 * s.gradient + prior_precision * unknowns;
-      if (likelihood_.parts().field) g[2] += 0.5 * s.gradient[2] * (length_slope(x[2]) - 1);
-      if (gradient) Eigen::Map<VectorXd>(gradient, start_.size()) = g;
-      if (*cost < best_cost_) {
-        best_cost_ = *cost;
-        best_ = unknowns;
-        gradient_at_best_ = g.cwiseAbs().maxCoeff();
-      }
-      return std::isfinite(*cost);
+      VectorXd slopes = VectorXd::Ones(unknowns.size());
+      if (likelihood_.parts().field) slopes[2] = length_slope(unknowns[2]);
+      cost.gradient = 0.5 * slopes.cwiseProduct(s.gradient) + prior_precision * unknowns;
+      cost.information = 0.5 * slopes.asDiagonal() * s.information * slopes.asDiagonal();
+      cost.information.diagonal().array() += prior_precision;
+      const double value = 0.5 * (s.minus_two_log + prior_precision * unknowns.squaredNorm());
+      if (std::isfinite(value)) cost.value = value;
+      cost.minus_two_log = s.minus_two_log;
     } catch (const Error&) {
-      return false;
     }
+    return cost;
   }
-  int NumParameters() const override { return static_cast<int>(start_.size()); }
-
-  /// The unknowns of the least cost so far.
-  const VectorXd& best() const { return best_; }
-  /// The largest element of the gradient there.
-  double gradient_at_best() const { return gradient_at_best_; }
 
   CornerNoise noise_at(const VectorXd& unknowns) const {
     VectorXd logs = start_ + unknowns.cwiseMax(-20.0).cwiseMin(20.0);
     if (likelihood_.parts().field) logs[2] = low_ + width_ * share(unknowns[2]);
     return likelihood_.noise(logs);
   }
+
+  VectorXd at_start() const { return VectorXd::Zero(start_.size()); }
 
  private:
   /// In (0, 1); at 0 that of the start.
@@ -78,28 +92,37 @@ class NoiseCost : public ceres::FirstOrderFunction {
   const RestrictedLikelihood& likelihood_;
   VectorXd start_;
   double low_, width_;
-  mutable double at_first_ = 0;
-  mutable VectorXd best_;  // Ceres evaluates one point at a time
-  mutable double best_cost_ = HUGE_VAL, gradient_at_best_ = HUGE_VAL;
 };
 
-CornerNoise default_start(const RestrictedLikelihood& likelihood, double spacing_m) {
-  // with little else, white noise alone has the residuals' size
-  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9};
-  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::step);
-  const double dof = static_cast<double>(likelihood.coordinates()) -
-                     6.0 * static_cast<double>(likelihood.frames()) -
-                     static_cast<double>(likelihood.rig_directions());
-  const double sigma = std::sqrt(std::max(s.equations.chi2, 1e-12) / std::max(dof, 1.0));
-  CornerNoise start;
-  start.white_px = 0.7 * sigma;
-  start.field_px = 0.5 * sigma;
-  start.field_length_m = 2 * spacing_m;
-  start.motion_m = 0.004 * spacing_m;
-  start.motion_rad = 1e-3;
-  start.shape_plane_m = 0.001 * spacing_m;
-  start.shape_height_m = 0.004 * spacing_m;
-  return start;
+/// Of the solution −2 l alone.
+NoiseFit fit_from(const RestrictedLikelihood& likelihood,
+                  double spacing_m,
+                  const CornerNoise& start,
+                  double least_gain) {
+  const NoiseCost cost(likelihood, spacing_m, start);
+  NoiseFit fit;
+  VectorXd x = cost.at_start();
+  CostAt here = cost.at(x);
+  double damping = first_damping;
+  while (std::isfinite(here.value) && fit.iterations < most_iterations && damping < most_damping) {
+    fit.converged = here.gain() < least_gain;
+    if (fit.converged) break;
+    ++fit.iterations;
+    const VectorXd step = here.step(damping);
+    CostAt there = cost.at(x + step);
+    const double expected = -(here.gradient.dot(step) + 0.5 * step.dot(here.information * step));
+    const double share = (here.value - there.value) / expected;
+    damping = share > 0.75   ? std::max(damping / 10, least_damping)
+              : share > 0.25 ? damping
+                             : 10 * damping;
+    if (!(there.value < here.value)) continue;
+    x += step;
+    here = std::move(there);
+  }
+  fit.noise = cost.noise_at(x);
+  fit.parts = likelihood.parts();
+  fit.solution.minus_two_log = here.minus_two_log;
+  return fit;
 }
 
 /// Two variances, each on the edge of its range.
@@ -111,33 +134,40 @@ ComponentTest two_variances_test(double minus_two_log, double minus_two_log_with
 
 }  // namespace
 
+CornerNoise usual_start(const RestrictedLikelihood& likelihood,
+                        double spacing_m,
+                        double field_spacings) {
+  // with little else, white noise alone has the residuals' size
+  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9};
+  const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::step);
+  const double dof = static_cast<double>(likelihood.coordinates()) -
+                     6.0 * static_cast<double>(likelihood.frames()) -
+                     static_cast<double>(likelihood.rig_directions());
+  const double sigma = std::sqrt(std::max(s.equations.chi2, 1e-12) / std::max(dof, 1.0));
+  CornerNoise start;
+  start.white_px = 0.7 * sigma;
+  start.field_px = 0.5 * sigma;
+  start.field_length_m = field_spacings * spacing_m;
+  start.motion_m = 0.004 * spacing_m;
+  start.motion_rad = 1e-3;
+  start.shape_plane_m = 0.001 * spacing_m;
+  start.shape_height_m = 0.004 * spacing_m;
+  return start;
+}
+
 NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           double spacing_m,
                           const std::optional<CornerNoise>& start,
-                          double largest_gradient) {
-  const CornerNoise from = start ? *start : default_start(likelihood, spacing_m);
-  auto* cost = new NoiseCost(likelihood, spacing_m, from);  // owned by the problem
-  const ceres::GradientProblem problem(cost);
-  VectorXd x = VectorXd::Zero(cost->NumParameters());
-  ceres::GradientProblemSolver::Options options;
-  options.line_search_direction_type = ceres::BFGS;
-  options.max_num_iterations = 100;
-  options.function_tolerance = 1e-10;
-  options.gradient_tolerance = largest_gradient;
-  options.parameter_tolerance = 1e-6;
-  options.logging_type = ceres::SILENT;
-  NoiseFit fit;
-  for (int attempt = 0; attempt < 4 && !fit.converged; ++attempt) {
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, x.data(), &summary);
-    x = cost->best();  // a line search that fails returns to its start
-    fit.iterations += static_cast<int>(summary.iterations.size());
-    fit.converged = cost->gradient_at_best() <= largest_gradient;
+                          double least_gain) {
+  NoiseFit best = fit_from(likelihood, spacing_m,
+                           start ? *start : usual_start(likelihood, spacing_m), least_gain);
+  if (!start && likelihood.parts().field) {
+    NoiseFit other =
+        fit_from(likelihood, spacing_m, usual_start(likelihood, spacing_m, long_field), least_gain);
+    if (other.solution.minus_two_log < best.solution.minus_two_log) best = std::move(other);
   }
-  fit.noise = cost->noise_at(x);
-  fit.parts = likelihood.parts();
-  fit.solution = likelihood.at(fit.noise, RestrictedLikelihood::Want::solution);
-  return fit;
+  best.solution = likelihood.at(best.noise, RestrictedLikelihood::Want::solution);
+  return best;
 }
 
 ComponentTest motion_test(double minus_two_log, double minus_two_log_without) {

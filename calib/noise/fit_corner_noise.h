@@ -19,17 +19,22 @@ struct NoiseFit {
   int iterations = 0;
 };
 
-/// Maximises the restricted likelihood over the logarithms of the components by BFGS with a Wolfe
-/// line search (Nocedal and Wright 2006, chapters 3 and 6; Ceres), from `start` or, without one,
-/// from the size of the residuals. A component that is not there runs towards zero; a weak prior
-/// (three powers of ten or more for each component) keeps it finite. Lengths of the field stay
-/// between half and twenty spacings of the board's points. It ends where no element of the gradient
-/// of −l by the logarithms is above `largest_gradient`: at the curvature of a component that
-/// matters, some 10 and more, its logarithm is then known to a thousandth.
+/// From the size of the residuals; a field of this length.
+CornerNoise usual_start(const RestrictedLikelihood& likelihood,
+                        double spacing_m,
+                        double field_spacings = 2);
+
+/// Maximises the restricted likelihood over the logarithms of the components by scoring with the
+/// average information (Gilmour, Thompson and Cullis 1995), damped after Levenberg and Marquardt
+/// (Nocedal and Wright 2006, chapter 10). A component that is not there runs towards zero; a weak
+/// prior (three powers of ten or more for each component) keeps it finite. Lengths of the field
+/// stay between half and twenty spacings of the board's points. It ends where a further step would
+/// lower −2 l by less than `least_gain`. Without a `start`, the better of two: the likelihood can
+/// have a maximum with a short and one with a long field.
 NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           double spacing_m,
                           const std::optional<CornerNoise>& start = {},
-                          double largest_gradient = 0.005);
+                          double least_gain = 1e-4);
 
 /// The test that a group of components is absent, by twice the ratio of restricted likelihoods. On
 /// the boundary of the parameters it is, for white noise alone, at most as large as a mixture of

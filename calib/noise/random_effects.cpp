@@ -35,15 +35,15 @@ constexpr int most_steps = 12;
 
 /// A round of components and minimum.
 struct Round {
-  bool second_start;        ///< of the components
-  double largest_gradient;  ///< of the likelihood by their logarithms
-  double settled_sigmas;    ///< length of the last step, of rig and shape
+  bool new_starts;        ///< of the components
+  double least_gain;      ///< of −2 l by another step of theirs
+  double settled_sigmas;  ///< length of the last step, of rig and shape
 };
 
-/// The likelihood can have more than one maximum, and that at the usual minimum is not yet the one
-/// to look at: there the shape is in the residuals of all frames. Roughly twice, then to the end.
+/// At the usual minimum a shape is in the residuals of all frames, and which of several maxima of
+/// the likelihood is the greatest cannot be told there. Roughly twice, then to the end.
 constexpr std::array<Round, 3> rounds{
-    {{false, 0.005, 0.05}, {true, 0.005, 0.05}, {false, 0.005, 1e-5}}};
+    {{false, 1e-2, 0.05}, {true, 1e-2, 0.05}, {false, 1e-4, 1e-5}}};
 
 class EffectsProblem {
  public:
@@ -112,15 +112,14 @@ void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimu
   z.prior_information = M.transpose() * all.prior_information * M;
 }
 
-/// From the last components if there are any, and from the usual start without them or if a second
-/// start is wanted.
+/// From these components, and from the usual starts if they are wanted.
 NoiseFit best_fit(const RestrictedLikelihood& likelihood,
                   double spacing_m,
-                  const std::optional<CornerNoise>& last,
+                  const CornerNoise& last,
                   const Round& round) {
-  NoiseFit fit = fit_corner_noise(likelihood, spacing_m, last, round.largest_gradient);
-  if (!last || !round.second_start) return fit;
-  NoiseFit other = fit_corner_noise(likelihood, spacing_m, {}, round.largest_gradient);
+  NoiseFit fit = fit_corner_noise(likelihood, spacing_m, last, round.least_gain);
+  if (!round.new_starts) return fit;
+  NoiseFit other = fit_corner_noise(likelihood, spacing_m, {}, round.least_gain);
   return fit.solution.minus_two_log <= other.solution.minus_two_log ? fit : other;
 }
 
@@ -142,7 +141,9 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
   }
   std::optional<CornerNoise> last;
   for (const Round& round : rounds) {
-    result.noise = best_fit(problem.at(result.state, result.shape_m), spacing_m, last, round);
+    const RestrictedLikelihood likelihood = problem.at(result.state, result.shape_m);
+    if (!last) last = usual_start(likelihood, spacing_m);
+    result.noise = best_fit(likelihood, spacing_m, *last, round);
     last = result.noise.noise;
     result.converged = false;
     for (int i = 0; i < most_steps && !result.converged; ++i) {

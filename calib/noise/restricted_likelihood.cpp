@@ -8,6 +8,7 @@
 
 #include "calib/base/decompositions.h"
 #include "calib/error.h"
+#include "calib/noise/average_information.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/frame_rows.h"
 #include "calib/noise/likelihood_gradient.h"
@@ -232,6 +233,20 @@ VectorXd RestrictedLikelihood::gradient(const std::vector<FieldCovariance>& fiel
   return gradient;
 }
 
+/// Of the components that are there.
+MatrixXd RestrictedLikelihood::information(const std::vector<FieldCovariance>& fields,
+                                           const std::vector<FrameEquations>& frames,
+                                           const ScaledFactor& S,
+                                           const VectorXd& z,
+                                           const CornerNoise& noise) const {
+  std::vector<Index> there{0};
+  if (parts_.field) there.insert(there.end(), {1, 2});
+  if (parts_.motion) there.insert(there.end(), {3, 4});
+  if (parts_.shape) there.insert(there.end(), {5, 6});
+  const VectorXd shape_m = shape_m_ + z.tail(linear_.unknowns.shape);
+  return average_information(linear_, fields, frames, S, z, shape_m, noise)(there, there);
+}
+
 NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) const {
   const Unknowns& unknowns = linear_.unknowns;
   const VectorXd variances = shape_variances(noise), of_motion = motion_variances(noise);
@@ -258,6 +273,7 @@ NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) cons
                           score.dot(result.step);
   if (want != Want::step) {
     result.gradient = gradient(fields, frames, S.inverse(), result.step, noise);
+    result.information = information(fields, frames, S, result.step, noise);
   }
   if (want == Want::gradient) return result;
   result.pose_steps.resize(6, static_cast<Index>(frames.size()));

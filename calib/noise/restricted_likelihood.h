@@ -11,6 +11,7 @@
 #include "calib/noise/linear_frames.h"
 #include "calib/noise/mixed_model.h"
 #include "calib/noise/rig_knowledge.h"
+#include "calib/noise/scaled_factor.h"
 #include "calib/solver/normal_equations.h"
 
 namespace vernier::internal {
@@ -29,6 +30,7 @@ struct FrameMotion {
 struct NoiseSolution {
   double minus_two_log = 0;          ///< of the restricted likelihood, up to a constant
   Eigen::VectorXd gradient;          ///< of that, by the logarithms of the components
+  Eigen::MatrixXd information;       ///< in these (calib/noise/average_information.h)
   Eigen::VectorXd step;              ///< of the rig's free directions, then of the shape
   Eigen::MatrixXd pose_steps;        ///< 6 x frames
   ReducedNormalEquations equations;  ///< whitened, poses and motion eliminated; prior included
@@ -97,6 +99,11 @@ class RestrictedLikelihood {
                            const Eigen::MatrixXd& S_inverse,
                            const Eigen::VectorXd& z,
                            const CornerNoise& noise) const;
+  Eigen::MatrixXd information(const std::vector<FieldCovariance>& fields,
+                              const std::vector<FrameEquations>& frames,
+                              const ScaledFactor& S,
+                              const Eigen::VectorXd& z,
+                              const CornerNoise& noise) const;
 
   NoiseParts parts_;
   RigKnowledge prior_;

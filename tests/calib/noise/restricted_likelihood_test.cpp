@@ -10,9 +10,9 @@
 #include "calib/calibrate.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
-#include "calib/noise/field_spectrum.h"
 #include "calib/noise/noise_of_estimate.h"
 #include "tests/support/board_defects.h"
+#include "tests/support/dense_likelihood.h"
 #include "tests/support/noisy_board.h"
 #include "tests/support/scenes.h"
 
@@ -48,68 +48,14 @@ RigEstimate small_calibration(const CalibrationOptions& how = {}) {
   return calibrate(drawn.board.observations, options);
 }
 
-/// −2 l as written in the header, with every matrix dense and the shape in V.
-double dense_minus_two_log(const RigEstimate& estimate, const CornerNoise& noise, bool shape) {
+double dense_minus_two_log(const RigEstimate& estimate, CornerNoise noise, bool shape) {
+  if (!shape) noise.shape_plane_m = noise.shape_height_m = 0;
   const auto& evidence = *estimate.evidence;
+  const BoardState state{estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   const MatrixXd free = free_directions(estimate.rig, held_parameters(estimate));
-  const auto frames =
-      frame_rows(evidence.observations,
-                 {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m}, free);
-  const auto points = evidence.observations.target_m;
-  Index rows = 0;
-  for (const auto& f : frames) rows += f.residual_px.size();
-  const auto F = static_cast<Index>(frames.size());
-  MatrixXd V = MatrixXd::Zero(rows, rows), X = MatrixXd::Zero(rows, free.cols() + 6 * F);
-  MatrixXd D = MatrixXd::Zero(rows, 3 * static_cast<Index>(points.size()));
-  VectorXd r(rows);
-  Index at = 0;
-  for (Index k = 0; k < F; ++k) {
-    const FrameRows& f = frames[static_cast<std::size_t>(k)];
-    const Index n = f.residual_px.size();
-    MatrixXd Vf = noise.white_px * noise.white_px * MatrixXd::Identity(n, n);
-    for (const ViewRows& view : f.views) {
-      std::vector<Eigen::Vector3d> seen;
-      for (const int id : view.ids) seen.push_back(points[static_cast<std::size_t>(id)]);
-      const auto m = static_cast<Index>(seen.size());
-      const MatrixXd K = field_correlation(seen, noise.field_length_m);
-      for (int uv = 0; uv < 2; ++uv) {
-        const Index first = view.first + uv * m;
-        Vf.block(first, first, m, m) += noise.field_px * noise.field_px * K;
-        for (Index i = 0; i < m; ++i) {
-          D.block<1, 3>(at + first + i, 3 * view.ids[static_cast<std::size_t>(i)]) =
-              f.by_point.row(first + i);
-        }
-      }
-    }
-    VectorXd s(6);
-    s << VectorXd::Constant(3, noise.motion_rad), VectorXd::Constant(3, noise.motion_m);
-    Vf += f.by_motion * s.cwiseAbs2().asDiagonal() * f.by_motion.transpose();
-    V.block(at, at, n, n) = Vf;
-    X.block(at, 0, n, free.cols()) = f.by_rig;
-    X.block(at, free.cols() + 6 * k, n, 6) = f.by_pose;
-    r.segment(at, n) = f.residual_px;
-    at += n;
-  }
-  if (shape) {
-    VectorXd b(D.cols());
-    for (Index i = 0; i < b.size(); ++i)
-      b[i] = i % 3 < 2 ? noise.shape_plane_m : noise.shape_height_m;
-    V += D * b.cwiseAbs2().asDiagonal() * D.transpose();
-  }
-  const auto log_determinant = [](const MatrixXd& A) {
-    const VectorXd scale = A.diagonal().cwiseSqrt();
-    const MatrixXd scaled =
-        scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
-    return 2 * MatrixXd(scaled.llt().matrixL()).diagonal().array().log().sum() +
-           2 * scale.array().log().sum();
-  };
-  const MatrixXd ViX = V.ldlt().solve(X);
-  const MatrixXd N = X.transpose() * ViX;
-  const VectorXd scale = N.diagonal().cwiseSqrt().cwiseInverse();
-  const VectorXd score = scale.asDiagonal() * (ViX.transpose() * r);
-  const MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
-  return log_determinant(V) + log_determinant(N) + r.dot(V.ldlt().solve(r)) -
-         score.dot(scaled.ldlt().solve(score));
+  return test::DenseLikelihood(frame_rows(evidence.observations, state, free),
+                               evidence.observations.target_m)
+      .minus_two_log(noise);
 }
 
 TEST(RestrictedLikelihood, IsThatOfDenseMatrices) {

@@ -170,10 +170,12 @@ Solved solve(const CheckArguments& options, Session& session) {
 /// Said where a check knows no random effects.
 void tell_of_effects(const CheckArguments& options, const Solved& solved, Session& session) {
   if (!solved.how.board_shape && !solved.how.motion) return;
-  session.warn(fmt::format(
-      "the board's shape and motion are estimated; {} without, from the same corners",
-      options.holdout ? "mrcal, Monte Carlo and the held-out boards check the calibration"
-                      : "mrcal and Monte Carlo check the calibration"));
+  std::string checks = "mrcal and Monte Carlo";
+  if (!options.injected.empty()) checks += ", the rigs that are wrong on purpose";
+  if (options.holdout) checks += ", the held-out boards";
+  session.warn(
+      "the board's shape and motion are estimated; checked without, from the same corners: " +
+      checks);
 }
 
 BoardState state_of(const RigEstimate& estimate) {
@@ -237,13 +239,13 @@ void run(const CheckArguments& options, Session& session) {
                                session));
   }
   if (!options.injected.empty()) {
-    add("injected", check_injected(solved.estimate, problem.observations, state_of(solved.estimate),
-                                   problem.problem.pixel_sigma_px,
-                                   {.psi_c = options.injected,
-                                    .draws = options.copies.trials,
-                                    .seed = options.copies.seed,
-                                    .threads = options.copies.threads},
-                                   session));
+    add("injected",
+        check_injected(usual, problem.observations, problem.state, problem.problem.pixel_sigma_px,
+                       {.psi_c = options.injected,
+                        .draws = options.copies.trials,
+                        .seed = options.copies.seed,
+                        .threads = options.copies.threads},
+                       session));
   }
   if (options.holdout) {
     const BoardStand stand = options.stand == "still" ? BoardStand::still : BoardStand::hand_held;

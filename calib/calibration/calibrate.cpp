@@ -325,12 +325,16 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
 }
 
 /// Doubts of residuals that corner noise could have, but that are not noise.
-void doubt_structure(const Solution& s, CalibrationSummary& summary) {
+void doubt_structure(const Solution& s,
+                     const CalibrationOptions& options,
+                     CalibrationSummary& summary) {
   const bool free = s.problem.priors.empty() && s.cost.free.cols() == s.cost.free.rows();
   if (!free || summary.rms_px > largest_corner_noise_px || summary.rms_px < rounding_px) return;
   std::optional<ResidualFinding> finding;
-  if (s.problem.warp == BoardWarp::known) finding = bent_board_finding(s.observations, s.state);
-  if (!finding) finding = change_finding(s.observations, s.state);
+  if (s.problem.warp == BoardWarp::known && !options.board_shape) {
+    finding = bent_board_finding(s.observations, s.state);
+  }
+  if (!finding) finding = change_finding(s.observations, s.state, options.motion);
   if (finding) summary.trust_warnings.push_back(finding->text);
 }
 
@@ -360,7 +364,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   check_effects(options, observations.size_px.size());
   Solution s = solve(std::move(observations), options);
   CalibrationSummary summary = summary_of(s, options);
-  if (options.check_input) doubt_structure(s, summary);
+  if (options.check_input) doubt_structure(s, options, summary);
   if (has_effects(options)) {
     move_to_effects(options, s.observations, s.problem, s.state, s.cost, summary);
     s.bound = minimum_variance_bound(s.cost.equations, s.cost.names);

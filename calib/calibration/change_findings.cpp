@@ -53,20 +53,22 @@ ResidualFinding scatter_finding(const FrameScatter& scatter, const Rig& rig) {
                         "{}): switch off autofocus, zoom and image stabilisation",
                         camera, scatter.shift_px, 100 * scatter.share, scatter.worst_frame)};
   }
-  return {
-      scatter.share,
-      fmt::format("the images of a frame do not belong together: those of {} are off against the "
-                  "others' by {:.1f} px rms, another way in each frame ({:.0f} % of the squared "
-                  "residuals, most in frame {}): the cameras are not simultaneous while the board "
-                  "or the rig moves, or they moved relative to each other; hold the board still, "
-                  "trigger the cameras at once, fix them to each other",
-                  camera, scatter.shift_px, 100 * scatter.share, scatter.worst_frame)};
+  return {scatter.share,
+          fmt::format(
+              "the images of a frame do not belong together: those of {} are off against the "
+              "others' by {:.1f} px rms, another way in each frame ({:.0f} % of the squared "
+              "residuals, most in frame {}): the cameras are not simultaneous while the board "
+              "or the rig moves, or they moved relative to each other; hold the board still, "
+              "trigger the cameras at once, fix them to each other, or estimate its motion with "
+              "--motion",
+              camera, scatter.shift_px, 100 * scatter.share, scatter.worst_frame)};
 }
 
 }  // namespace
 
 std::optional<ResidualFinding> change_finding(const BoardObservations& observations,
-                                              const BoardState& state) {
+                                              const BoardState& state,
+                                              bool motion_is_estimated) {
   std::vector<FrameScatter> all;
   try {
     all = frame_scatter(observations, state);
@@ -77,6 +79,7 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
   const FrameScatter* scatter = nullptr;
   for (const FrameScatter& s : all) {
     if (!(s.f_ratio >= least_f)) continue;
+    if (motion_is_estimated && !s.is_split && s.kept == Kept::pose) continue;
     const FrameScatter*& best = s.is_split ? split : scatter;
     if (!best || s.share > best->share) best = &s;
   }
@@ -106,7 +109,7 @@ std::optional<ResidualFinding> bent_board_finding(const BoardObservations& obser
         fmt::format(
             "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y explains "
             "{:.0f} % of the squared residuals; use a stiff board, or estimate its shape with "
-            "--warp",
+            "--board-shape",
             1e3 * warp_m.x(), 1e3 * warp_m.y(), 100 * std::min(1.0, share))};
   } catch (const Error&) {
     return {};

@@ -14,9 +14,11 @@ namespace vernier::internal {
 /// explains a quarter of Σ r² and nearly what a change in every frame does; otherwise a change in
 /// every frame if it explains half (calib/calibration/frame_scatter.h). Good real sets reach 0.08
 /// and 0.41, whatever their number of corners, since lens and board are never quite as modelled.
-/// std::nullopt if neither; `state` as there.
+/// std::nullopt if neither; `state` as there. Where the board's motion between exposures is
+/// estimated, another pose of a camera in every frame is no doubt.
 std::optional<ResidualFinding> change_finding(const BoardObservations& observations,
-                                              const BoardState& state);
+                                              const BoardState& state,
+                                              bool motion_is_estimated = false);
 
 /// The doubt that the board is bent: a warp (calib/board/board_warp.h), by a score test, explains
 /// half of Σ r². `state` is a minimum with a known warp, without prior or held parameters.

@@ -20,6 +20,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/uncertainty/joint_information.h"
+#include "tests/support/bent_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/noisy_board.h"
 #include "tests/support/scenes.h"
@@ -136,6 +137,23 @@ TEST(Effects, OfARigFileMustFitItsBoard) {
             "again");
   EXPECT_EQ(fault([](CalibrationEffects& e) { e.white_px = 0; }),
             "rig.json: calibration.effects.white_px: is not above 0; calibrate again");
+}
+
+// What is estimated is no doubt: a board that moves far, and one that is bent.
+TEST(Effects, ThatAreEstimatedAreNotDoubted) {
+  const CornerNoise far{.white_px = 0.05, .motion_m = 1e-3};
+  const BoardObservations moved =
+      test::noisy_board(test::stereo_rig(), {}, {.seed = 8102, .frames = 14}, far)
+          .board.observations;
+  const std::string doubt = calibrate(moved).calibration->trust_warnings.at(0);
+  EXPECT_NE(doubt.find("estimate its motion with --motion"), std::string::npos) << doubt;
+  EXPECT_TRUE(calibrate(moved, {.motion = true}).calibration->trust_warnings.empty());
+  const BoardObservations bent = test::bent(
+      simulate_board(test::stereo_rig(), {}, {.seed = 8103, .frames = 14, .pixel_sigma_px = 0.1}),
+      {3e-3, 2e-3});
+  const std::string bend = calibrate(bent).calibration->trust_warnings.at(0);
+  EXPECT_NE(bend.find("estimate its shape with --board-shape"), std::string::npos) << bend;
+  EXPECT_TRUE(calibrate(bent, {.board_shape = true}).calibration->trust_warnings.empty());
 }
 
 // The joint cost has no effects, so that such a calibration counts as the prior that it is.

@@ -79,7 +79,6 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
   const FrameScatter* scatter = nullptr;
   for (const FrameScatter& s : all) {
     if (!(s.f_ratio >= least_f)) continue;
-    if (motion_is_estimated && !s.is_split && s.kept == Kept::pose) continue;
     const FrameScatter*& best = s.is_split ? split : scatter;
     if (!best || s.share > best->share) best = &s;
   }
@@ -87,8 +86,9 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
       (!scatter || split->share >= one_change * scatter->share)) {
     return split_finding(*split, state.rig);
   }
-  if (scatter && scatter->share >= least_scatter_share) return scatter_finding(*scatter, state.rig);
-  return {};
+  if (!scatter || scatter->share < least_scatter_share) return {};
+  if (motion_is_estimated && scatter->kept == Kept::pose) return {};
+  return scatter_finding(*scatter, state.rig);
 }
 
 std::optional<ResidualFinding> bent_board_finding(const BoardObservations& observations,

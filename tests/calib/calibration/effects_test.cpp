@@ -147,13 +147,15 @@ TEST(Effects, ThatAreEstimatedAreNotDoubted) {
           .board.observations;
   const std::string doubt = calibrate(moved).calibration->trust_warnings.at(0);
   EXPECT_NE(doubt.find("estimate its motion with --motion"), std::string::npos) << doubt;
-  EXPECT_TRUE(calibrate(moved, {.motion = true}).calibration->trust_warnings.empty());
+  const RigEstimate with_motion = calibrate(moved, {.motion = true});
+  EXPECT_EQ(with_motion.calibration->trust_warnings, std::vector<std::string>{});
   const BoardObservations bent = test::bent(
       simulate_board(test::stereo_rig(), {}, {.seed = 8103, .frames = 14, .pixel_sigma_px = 0.1}),
       {3e-3, 2e-3});
   const std::string bend = calibrate(bent).calibration->trust_warnings.at(0);
   EXPECT_NE(bend.find("estimate its shape with --board-shape"), std::string::npos) << bend;
-  EXPECT_TRUE(calibrate(bent, {.board_shape = true}).calibration->trust_warnings.empty());
+  const RigEstimate with_shape = calibrate(bent, {.board_shape = true});
+  EXPECT_EQ(with_shape.calibration->trust_warnings, std::vector<std::string>{});
 }
 
 // The joint cost has no effects, so that such a calibration counts as the prior that it is.

@@ -237,6 +237,7 @@ void add_lines(CLI::App& app, Session& session) {
                    "also write all segments with the covariance of both ends, a line an image");
   verb->add_option("-o,--output", o->output, "file of views, for map make and localise --features")
       ->required();
+  check_files_written(*verb, {"--output", "--segments"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

@@ -225,6 +225,7 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("--trial", o->trial, "number of the random draw for this seed")
       ->capture_default_str();
+  check_files_written(*verb, {"--features", "--segments", "--picture"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

@@ -302,6 +302,7 @@ void add_world_build(CLI::App& world, Session& session) {
   verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
   verb->add_option("--name", o->name, "name of the world");
   verb->add_option("-o,--output", o->output, "world file")->required();
+  check_files_written(*verb, {"--output", "--lines", "--plan"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

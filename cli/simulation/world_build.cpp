@@ -30,6 +30,7 @@
 #include "cli/simulation/floor_poses.h"
 #include "cli/simulation/plan_picture.h"
 #include "localise/joined_lines.h"
+#include "localise/views/depth_maps.h"
 #include "sim/built/built_world.h"
 #include "sim/built/depth_cloud.h"
 #include "sim/built/planar_patches.h"
@@ -50,24 +51,20 @@ struct BuildArguments {
   BuiltWorldOptions how;
 };
 
-/// Surfaces of the depth maps, which belong to the views in order.
+/// Surfaces of the depth maps among `files`, each of which belongs to an image of the views.
 std::vector<Patch> patches_of(const BuildArguments& options,
-                              const std::vector<std::filesystem::path>& maps,
-                              const std::vector<Pose>& T_floor_camera,
+                              const std::vector<std::filesystem::path>& files,
+                              const SeenViews& seen,
                               Session& session) {
-  if (maps.size() != T_floor_camera.size()) {
-    throw Error("--depth",
-                fmt::format("matches {} maps, and there are {} images of segments", maps.size(),
-                            T_floor_camera.size()),
-                "give the map of each image, in the same order by name");
-  }
+  const std::vector<std::filesystem::path> maps =
+      depth_maps_of_images(seen.images, files, "--depth " + options.depth);
   const ReadRig rig = read_named_rig(options.input.rig, session, maps.front().string());
   DepthCloud cloud(options.cloud);
   Progress progress(session, "depth maps");
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const DepthImage depth = read_depth_image(maps[i], options.depth_unit_m);
     with_errors_of(maps[i].string(), [&] {
-      cloud.add(depth, rig.estimate.rig.cameras.at(0), T_floor_camera[i]);
+      cloud.add(depth, rig.estimate.rig.cameras.at(0), seen.T_floor_camera[i]);
       return 0;
     });
     progress.update(static_cast<int>(i + 1), static_cast<int>(maps.size()));
@@ -157,7 +154,9 @@ void check_outputs(const BuildArguments& options, const std::vector<std::filesys
 /// Views of a wrong pose see each other's lines elsewhere.
 void doubt_poses(const SeenViews& seen, const JoinedLines& joined, Session& session) {
   constexpr double least_again = 0.35;
-  if (const std::string doubt = tilt_doubt(seen.T_floor_camera); !doubt.empty()) {
+  std::vector<double> down;
+  for (const Pose& T : seen.T_floor_camera) down.push_back(-T.R(2, 1));
+  if (const std::string doubt = tilt_doubt(down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
   const auto again = std::count_if(joined.lines.begin(), joined.lines.end(),
@@ -224,7 +223,7 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
   check_outputs(options, maps);
   const SeenViews seen = seen_views(options.input, session);
   const std::vector<Patch> patches =
-      maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen.T_floor_camera, session);
+      maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen, session);
   const std::string& source =
       options.input.features.empty() ? options.input.segments : options.input.features;
   const JoinedLines joined =

@@ -88,6 +88,29 @@ class WorldBuild(verb_calls.ProgramCase):
         run = self.run_program('study', 'built.toml', '-o', 'studied', '--threads', '1')
         self.assertIn(run.returncode, (0, 3), run.stderr)
 
+    def test_depth_maps_belong_to_images_by_name(self):
+        build = [*BUILD, '--depth', 'far*.png', '--rig', 'K.txt', '-o', 'b.toml', '-q']
+        segments = (self.folder / 'seen.jsonl').read_text().splitlines()
+        (self.folder / 'seen.jsonl').write_text('\n'.join(segments[i] for i in (0, 1, 3, 4)) + '\n')
+        (self.folder / 'far2.png').rename(self.folder / 'left_out.png')
+        self.done(*build)
+        without = (self.folder / 'b.toml').read_bytes()
+        # lines leaves images out; their maps, and any more, may stay
+        (self.folder / 'left_out.png').rename(self.folder / 'far2.png')
+        (self.folder / 'far17.png').write_bytes((self.folder / 'far0.png').read_bytes())
+        self.done(*build)
+        self.assertEqual((self.folder / 'b.toml').read_bytes(), without)
+        # the order of the names is none of the numbers
+        for i in range(5):
+            (self.folder / f'far{i}.png').rename(self.folder / f'far{i + 7}.png')
+        for name in ('seen.jsonl', 'poses.csv'):
+            text = (self.folder / name).read_text()
+            for i in range(5):
+                text = text.replace(f'walk{i}', f'walk{i + 7:02}')
+            (self.folder / name).write_text(text)
+        self.done(*build)
+        self.assertEqual((self.folder / 'b.toml').read_bytes(), without)
+
     def test_views_of_lines_do_without_depth(self):
         found = json.loads(self.done('world', 'build', '--features', 'walk.jsonl', '-o', 'f.toml',
                                      '--lines', 'lines.csv', '--json'))
@@ -145,7 +168,8 @@ class WorldBuild(verb_calls.ProgramCase):
         self.refused(*BUILD, '--depth', 'far*.png', says='without --rig')
         self.refused(*BUILD, '--rig', 'K.txt', says='no effect')
         self.refused(*BUILD, '--recede-m', '0.1', says='no depth maps')
-        self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt', says='matches 2 maps')
+        self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt',
+                     says='--depth far[01].png: has no map of "walk2.pgm" and 2 more of the 5 images')
         self.refused(*BUILD, '--up', 'w', says='--up')
         self.refused('world', 'build', '--features', 'walk.jsonl', '--height-m', '2', says='its own')
         twice = (self.folder / 'seen.jsonl').read_text()

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,7 +46,7 @@ namespace {
 struct BuildArguments {
   BuildInput input;
   std::string depth, output, lines, plan, name;
-  double depth_unit_m = 0.001;
+  double depth_unit_m = 0.001, upright_deg = 2;
   JoinOptions join;
   DepthCloudOptions cloud;
   BuiltWorldOptions how;
@@ -72,16 +73,16 @@ std::vector<Patch> patches_of(const BuildArguments& options,
   return planar_patches(cloud);
 }
 
-/// The world's segments with their covariance, as a table.
-std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_lines) {
+/// The lines of the world's segments, as measured, with their covariance, as a table.
+std::string lines_csv(const JoinedLines& joined, const BuiltWorld& built) {
   std::string text = "segment,views,sightings,chi2,a_x_m,a_y_m,a_z_m,b_x_m,b_y_m,b_z_m";
   constexpr std::array names{"ax", "ay", "az", "bx", "by", "bz"};
   for (int i = 0; i < 6; ++i) {
     for (int k = i; k < 6; ++k) text += fmt::format(",{}_{}_m2", names[i], names[k]);
   }
-  text += '\n';
-  for (std::size_t s = 0; s < of_lines.size(); ++s) {
-    const JoinedLine& line = joined.lines[of_lines[s]];
+  text += ",upright\n";
+  for (std::size_t s = 0; s < built.of_lines.size(); ++s) {
+    const JoinedLine& line = joined.lines[built.of_lines[s]];
     text += fmt::format("{},{},{},{:.4g}", s, line.views, line.sightings.size(), line.chi2);
     for (const Eigen::Vector3d* end : {&line.a_m, &line.b_m}) {
       for (int k = 0; k < 3; ++k) text += fmt::format(",{:.6f}", (*end)[k]);
@@ -89,7 +90,8 @@ std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_line
     for (int i = 0; i < 6; ++i) {
       for (int k = i; k < 6; ++k) text += fmt::format(",{:.6g}", line.covariance_m2(i, k));
     }
-    text += '\n';
+    const auto& [a_m, b_m] = built.world.loose.segments_m[s];
+    text += a_m.head<2>() == b_m.head<2>() ? ",1\n" : ",0\n";
   }
   return text;
 }
@@ -196,23 +198,19 @@ void report(const BuildArguments& options,
                                           options.how.min_sightings));
   }
   const double route_m = route_length_m(world.route);
-  Json json{{"file", options.output},
-            {"views", seen.views.size()},
-            {"segments", seen.segments},
-            {"joined", r.joined},
-            {"lines", r.lines},
-            {"surfaces", r.surfaces},
-            {"surfaces_on_the_way", r.on_the_way},
-            {"hidden_share", hidden},
-            {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
-            {"route_m", route_m},
-            {"doubts", session.trust_warnings()}};
+  Json json{{"file", options.output},    {"views", seen.views.size()},
+            {"segments", seen.segments}, {"joined", r.joined},
+            {"lines", r.lines},          {"upright", r.upright},
+            {"surfaces", r.surfaces},    {"surfaces_on_the_way", r.on_the_way},
+            {"hidden_share", hidden},    {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
+            {"route_m", route_m},        {"doubts", session.trust_warnings()}};
   session.result(json, fmt::format("{} views, {} segments: {} lines joined, {} of them seen by {} "
-                                   "views at least\n{} surfaces ({} more left out where the "
+                                   "views at least, of which {} are upright as far as is known\n{} "
+                                   "surfaces ({} more left out where the "
                                    "cameras passed), which hide {:.1f} % of what the views saw; "
                                    "route of {:.1f} m\nwritten to {}\n",
                                    seen.views.size(), seen.segments, r.joined, r.lines,
-                                   options.how.min_sightings, r.surfaces, r.on_the_way,
+                                   options.how.min_sightings, r.upright, r.surfaces, r.on_the_way,
                                    100 * hidden, route_m, options.output));
 }
 
@@ -228,14 +226,16 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
       options.input.features.empty() ? options.input.segments : options.input.features;
   const JoinedLines joined =
       with_errors_of(source, [&] { return join_lines(seen.views, options.join); });
-  BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, options.how);
+  BuiltWorldOptions how = options.how;
+  how.upright_rad = options.upright_deg * std::numbers::pi / 180;
+  BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, how);
   built.world.name =
       options.name.empty() ? std::filesystem::path(source).stem().string() : options.name;
   const World world = build_world(built.world);
   const double hidden = hidden_share(world, joined, built, seen);
   OutputFiles outputs;
   outputs.add(options.output, format_world(built.world));
-  if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built.of_lines));
+  if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built));
   if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
   outputs.commit();
   if (world.surfaces.empty()) {
@@ -280,6 +280,10 @@ void add_world_build(CLI::App& world, Session& session) {
           "--recede-m", o->how.recede_m,
           "how far surfaces stand back from the cameras, so that their noise hides no line")
       ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--upright-deg", o->upright_deg,
+                   "lines that lean by less, and within their uncertainty, are upright (0: none)")
+      ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   verb->add_option("--min-sightings", o->how.min_sightings, "views that must have seen a line")
       ->check(CLI::Range(1, 1000))

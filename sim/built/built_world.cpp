@@ -12,6 +12,7 @@
 #include "calib/pose.h"
 #include "localise/joined_lines.h"
 #include "sim/built/planar_patches.h"
+#include "sim/built/upright_line.h"
 #include "sim/import/camera_path.h"
 #include "sim/world.h"
 #include "sim/world/plan_distance.h"
@@ -98,7 +99,11 @@ BuiltWorld built_world(const localise::JoinedLines& lines,
     const localise::JoinedLine& line = lines.lines[i];
     if (line.views < options.min_sightings) continue;
     if ((line.b_m - line.a_m).norm() < options.shortest_m) continue;
-    features.segments_m.emplace_back(line.a_m, line.b_m);
+    auto& [a_m, b_m] = features.segments_m.emplace_back(line.a_m, line.b_m);
+    if (options.upright_rad > 0 && may_be_upright(line, options.upright_rad)) {
+      make_upright(a_m, b_m);
+      ++built.report.upright;
+    }
     built.of_lines.push_back(static_cast<int>(i));
   }
   std::vector<PathCamera> cameras;

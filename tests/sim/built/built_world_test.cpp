@@ -102,6 +102,8 @@ localise::JoinedLine line(const Vector3d& a, const Vector3d& b, int views) {
   made.a_m = a;
   made.b_m = b;
   made.views = views;
+  made.covariance_m2.setIdentity();
+  made.covariance_m2 *= 1e-4;
   return made;
 }
 

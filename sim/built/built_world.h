@@ -28,8 +28,9 @@ struct BuiltWorldOptions {
   /// that lie on them: lines and depths err by centimetres, and what is a line's width behind a
   /// surface would not be seen at all.
   double recede_m = 0.05;
-  double floor_m = 0.1;   ///< level patches within this of height 0 are the floor
-  double walked_m = 0.2;  ///< nothing stands nearer to the cameras' way, on the floor plan
+  double floor_m = 0.1;  ///< level patches within this of height 0 are the floor
+  /// Nothing stands nearer to the cameras' places and to the route between them, on the floor plan.
+  double walked_m = 0.2;
 };
 
 struct BuiltWorldReport {

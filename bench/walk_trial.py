@@ -116,8 +116,8 @@ class Walk:
         self.run('convert', self.walk / 'K.txt', '--size', f'{width}x{height}', '-o', 'K.json')
         return json.loads(self.run('world', 'build', '--segments', 'walk.segments', *self.poses_at,
                                    '--depth', f'{self.walk}/depth/*.png', '--rig', self.walk / 'K.txt',
-                                   '--min-sightings', min_sightings, '-o', 'walk.world.toml',
-                                   '--json'))
+                                   '--min-sightings', min_sightings, '--upright-deg', '0', '-o',
+                                   'walk.world.toml', '--json'))
 
     def simulated(self, trial, sources):
         """The views of the same poses in that world."""

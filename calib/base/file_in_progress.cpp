@@ -69,6 +69,20 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+void check_writable_file(const std::filesystem::path& file) {
+  struct stat state {};
+  if (::stat(file.c_str(), &state) != 0 && errno == ENAMETOOLONG) {
+    throw_write_fault(file.string(), errno);
+  }
+  const std::filesystem::path folder = folder_of(followed(file));
+  if (::stat(folder.c_str(), &state) == 0 && !S_ISDIR(state.st_mode)) {
+    throw_write_fault(file.string(), ENOTDIR);
+  }
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+    throw_write_fault(file.string(), errno);
+  }
+}
+
 std::filesystem::path temporary_name_in(const std::filesystem::path& folder) {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number)) {

@@ -47,6 +47,10 @@ class FileInProgress {
   int descriptor_ = -1;
 };
 
+/// Throws the Error that a FileInProgress of this name would, as far as it can be told without
+/// making a file: for a fault that shall be found before the work whose result is written.
+void check_writable_file(const std::filesystem::path& file);
+
 /// Sync of a folder's entries; faults are ignored, since some file systems cannot.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 

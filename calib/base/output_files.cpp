@@ -28,6 +28,27 @@ bool exists_itself(const fs::path& file) {
   return ::lstat(file.c_str(), &state) == 0;
 }
 
+/// The folder and its parents as far as they are not there, innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  fs::path whole = folder.has_filename() ? folder : folder.parent_path();
+  std::error_code unknown;
+  for (; !whole.empty() && !fs::exists(whole, unknown) && !unknown; whole = whole.parent_path()) {
+    missing.push_back(whole);
+  }
+  return missing;
+}
+
+[[noreturn]] void throw_cannot_be_made(const fs::path& folder, int fault) {
+  throw Error(folder.string(), std::string("cannot be made: ") + std::strerror(fault),
+              "choose a folder that you may write to");
+}
+
+[[noreturn]] void throw_unusable(const fs::path& folder, const std::error_code& why) {
+  throw Error(folder.string(), why ? "cannot be used: " + why.message() : "is no folder",
+              "choose another name");
+}
+
 /// Gives the complete file `temporary` the name `target` of an existing file, which is kept under
 /// the name returned. File systems differ in what they can: exchange, hard link, rename only.
 /// Returns an empty path, with errno set, if it failed.
@@ -71,27 +92,31 @@ void OutputFiles::remove_folders() noexcept {
   made_folders_.clear();
 }
 
-void OutputFiles::add_folder(const fs::path& folder) {
-  std::vector<fs::path> missing;  // innermost first
-  fs::path whole = folder.has_filename() ? folder : folder.parent_path();
+void check_writable_folder(const fs::path& folder) {
+  const std::vector<fs::path> missing = missing_folders(folder);
+  fs::path there = missing.empty() ? folder : missing.back().parent_path();
+  if (there.empty()) there = ".";
   std::error_code unknown;
-  for (; !whole.empty() && !fs::exists(whole, unknown) && !unknown; whole = whole.parent_path()) {
-    missing.push_back(whole);
-  }
+  if (!fs::is_directory(there, unknown)) throw_unusable(folder, unknown);
+  if (::faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return;
+  if (!missing.empty()) throw_cannot_be_made(folder, errno);
+  throw Error(folder.string(), std::string("cannot be written: ") + std::strerror(errno),
+              "choose a folder that you may write to");
+}
+
+void OutputFiles::add_folder(const fs::path& folder) {
+  const std::vector<fs::path> missing = missing_folders(folder);
   for (auto next = missing.rbegin(); next != missing.rend(); ++next) {
     const auto lock = hold_off_abandoning();
     if (::mkdir(next->c_str(), 0777) == 0) {
       note_unfinished(*next, Unfinished::empty_folder);
       made_folders_.push_back(*next);
     } else if (errno != EEXIST) {
-      throw Error(folder.string(), std::string("cannot be made: ") + std::strerror(errno),
-                  "choose a folder that you may write to");
+      throw_cannot_be_made(folder, errno);
     }
   }
-  if (!fs::is_directory(folder, unknown)) {
-    throw Error(folder.string(), unknown ? "cannot be used: " + unknown.message() : "is no folder",
-                "choose another name");
-  }
+  std::error_code unknown;
+  if (!fs::is_directory(folder, unknown)) throw_unusable(folder, unknown);
 }
 
 FileInProgress& OutputFiles::add(const fs::path& file) {

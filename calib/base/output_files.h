@@ -52,4 +52,8 @@ class OutputFiles {
   std::vector<std::filesystem::path> made_folders_;  // outermost first
 };
 
+/// Throws Error if files in `folder` could not be written, which is made with its parents where
+/// missing, as far as it can be told without making anything.
+void check_writable_folder(const std::filesystem::path& folder);
+
 }  // namespace vernier::internal

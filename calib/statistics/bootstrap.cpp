@@ -16,9 +16,20 @@
 #include "calib/statistics/random.h"
 
 namespace vernier::internal {
+
 Interval bootstrap_interval(std::size_t clusters,
                             const ClusterStatistic& statistic,
                             const BootstrapOptions& options) {
+  const auto one = [&](std::span<const std::size_t> drawn) {
+    return std::vector<double>{statistic(drawn)};
+  };
+  return bootstrap_intervals(clusters, 1, one, options)[0];
+}
+
+std::vector<Interval> bootstrap_intervals(std::size_t clusters,
+                                          std::size_t count,
+                                          const ClusterStatistics& statistics,
+                                          const BootstrapOptions& options) {
   if (options.resamples < 1 || !(options.confidence > 0 && options.confidence < 1)) {
     throw Error(
         "bootstrap",
@@ -26,8 +37,9 @@ Interval bootstrap_interval(std::size_t clusters,
         "give at least one, and a confidence between 0 and 1");
   }
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  if (clusters < 2) return {nan, nan};
-  std::vector<double> values;
+  std::vector<Interval> intervals(count, Interval{nan, nan});
+  if (clusters < 2) return intervals;
+  std::vector<std::vector<double>> values(count);
   std::vector<std::size_t> drawn(clusters);
   for (int r = 0; r < options.resamples; ++r) {
     RandomStream draws({.seed = options.seed,
@@ -37,13 +49,18 @@ Interval bootstrap_interval(std::size_t clusters,
       const auto at = static_cast<std::size_t>(draws.uniform() * static_cast<double>(clusters));
       cluster = std::min(at, clusters - 1);
     }
-    const double value = statistic(drawn);
-    if (!std::isnan(value)) values.push_back(value);
+    const std::vector<double> of_drawn = statistics(drawn);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isnan(of_drawn.at(i))) values[i].push_back(of_drawn[i]);
+    }
   }
-  if (values.empty()) return {nan, nan};
   const double tail = 0.5 * (1 - options.confidence);
-  return {quantile(values, tail, QuantileKind::linear),
-          quantile(values, 1 - tail, QuantileKind::linear)};
+  for (std::size_t i = 0; i < count; ++i) {
+    if (values[i].empty()) continue;
+    intervals[i] = {quantile(values[i], tail, QuantileKind::linear),
+                    quantile(values[i], 1 - tail, QuantileKind::linear)};
+  }
+  return intervals;
 }
 
 }  // namespace vernier::internal

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "calib/interval.h"
 
@@ -30,5 +31,14 @@ using ClusterStatistic = std::function<double(std::span<const std::size_t> clust
 Interval bootstrap_interval(std::size_t clusters,
                             const ClusterStatistic& statistic,
                             const BootstrapOptions& options = {});
+
+/// Several values of a resample.
+using ClusterStatistics = std::function<std::vector<double>(std::span<const std::size_t> clusters)>;
+
+/// The same for `count` values that are computed together: an interval each, of the same resamples.
+std::vector<Interval> bootstrap_intervals(std::size_t clusters,
+                                          std::size_t count,
+                                          const ClusterStatistics& statistics,
+                                          const BootstrapOptions& options = {});
 
 }  // namespace vernier::internal

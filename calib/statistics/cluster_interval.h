@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "calib/interval.h"
 #include "calib/statistics/bootstrap.h"
 
@@ -25,5 +28,11 @@ Interval cluster_interval(int clusters,
                           const ClusterStatistic& statistic,
                           const BootstrapOptions& options = {.resamples = 999},
                           bool is_scale = false);
+
+/// The same for `count` values that are computed together, none of them a scale.
+std::vector<Interval> cluster_intervals(int clusters,
+                                        std::size_t count,
+                                        const ClusterStatistics& statistics,
+                                        const BootstrapOptions& options = {.resamples = 999});
 
 }  // namespace vernier::internal

@@ -162,6 +162,7 @@ void add_calibrate(CLI::App& app, Session& session) {
                  "skip the comparison with richer lens models on held-out views");
   verb->add_flag("--no-evidence", o->no_evidence, "do not store the corners in the rig file");
   verb->add_option("-o,--output", o->output, "rig file")->required();
+  check_files_written(*verb, {"--output"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

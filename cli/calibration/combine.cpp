@@ -22,6 +22,7 @@
 #include "calib/rig_prior.h"
 #include "calib/validation/rig_drift.h"
 #include "cli/calibration/observability_report.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
@@ -297,6 +298,7 @@ void add_combine(CLI::App& app, Session& session) {
       ->needs("--monitor");
   verb->add_flag("--no-evidence", o->no_evidence, "do not store corners and pairs in the rig file");
   verb->add_option("-o,--output", o->output, "rig file")->required();
+  check_files_written(*verb, {"--output", "--drift"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -8,6 +8,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "cli/calibration/board_input.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 
@@ -82,6 +83,7 @@ void add_detect(CLI::App& app, Session& session) {
                "--target aprilgrid.yaml -o corners.vnl");
   add_image_options(verb, options->input);
   verb->add_option("-o,--output", options->output, "corners file, in mrcal's format")->required();
+  check_files_written(*verb, {"--output"});
   verb->callback(
       [options, &session] { session.action = [=, &session] { run(*options, session); }; });
 }

@@ -50,7 +50,7 @@ struct LinesArguments {
 struct LinesFigures {
   std::vector<double> lines, sigmas_m;
   std::vector<double> relative_sigmas;  ///< of a line's distance
-  std::vector<double> tilts_deg;        ///< of the camera against one held level
+  std::vector<double> down;             ///< part of the camera's y axis; 1: held level
   std::size_t segments = 0, placed = 0;
 };
 
@@ -121,16 +121,15 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
         "most images have no reliable line in space: check that the depth maps are aligned with "
         "the images, and their unit, --depth-unit-m");
   }
-  constexpr double unlikely_relative = 0.3, unlikely_tilt_deg = 60;
+  constexpr double unlikely_relative = 0.3;
   if (median(f.relative_sigmas) > unlikely_relative) {
     session.add_trust_warning(fmt::format(
         "lines are uncertain by {:.0f} % of their distance (median): check the unit of the depth "
         "maps, --depth-unit-m",
         100 * median(f.relative_sigmas)));
   }
-  if (median(f.tilts_deg) > unlikely_tilt_deg) {
-    session.add_trust_warning(fmt::format(
-        "the camera is tilted by {:.0f} degrees (median): check --up", median(f.tilts_deg)));
+  if (const std::string doubt = tilt_doubt(f.down); !doubt.empty()) {
+    session.add_trust_warning(doubt);
   }
   Json json{{"images", f.lines.size()},
             {"segments", f.segments},
@@ -176,8 +175,7 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
       ++figures.placed;
       figures.relative_sigmas.push_back(s.relative_sigma);
     }
-    figures.tilts_deg.push_back(std::acos(std::clamp(all[i].R_level_camera(1, 1), -1.0, 1.0)) *
-                                180 / std::numbers::pi);
+    figures.down.push_back(all[i].R_level_camera(1, 1));
     figures.lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);
     views.append(view_line(seen));
@@ -237,6 +235,7 @@ void add_lines(CLI::App& app, Session& session) {
                    "also write all segments with the covariance of both ends, a line an image");
   verb->add_option("-o,--output", o->output, "file of views, for map make and localise --features")
       ->required();
+  check_files_written(*verb, {"--output", "--segments"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

@@ -198,6 +198,7 @@ void add_localise(CLI::App& app, Session& session) {
       ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "answers, one line a query");
+  check_files_written(*verb, {"--output"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

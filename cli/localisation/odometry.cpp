@@ -268,6 +268,7 @@ void add_odometry(CLI::App& app, Session& session) {
                    "none (repeatable)");
   verb->add_option("--seed", o->seed, "random seed of the simulated robot")->capture_default_str();
   verb->add_option("-o,--output", o->output, "trajectory, TUM format, as evo reads it");
+  check_files_written(*verb, {"--output"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

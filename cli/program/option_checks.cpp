@@ -13,6 +13,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "calib/base/file_in_progress.h"
+#include "calib/base/output_files.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
@@ -68,6 +70,22 @@ std::string png_name(const std::string& text) {
 }
 
 std::string not_empty(const std::string& text) { return text.empty() ? "is empty" : ""; }
+
+void check_files_written(CLI::App& verb, std::initializer_list<const char*> options) {
+  for (const char* option : options) {
+    verb.get_option(option)->check([](const std::string& name) {
+      if (!name.empty()) vernier::internal::check_writable_file(name);
+      return std::string();
+    });
+  }
+}
+
+void check_folder_written(CLI::App& verb, const char* option) {
+  verb.get_option(option)->check([](const std::string& name) {
+    if (!name.empty()) vernier::internal::check_writable_folder(name);
+    return std::string();
+  });
+}
 
 void check_numbers(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -21,6 +22,12 @@ std::string finite(const std::string& text);
 std::string png_name(const std::string& text);
 
 std::string not_empty(const std::string& text);
+
+/// Makes options of a verb name files that can be written, or a folder of such files. A fault is
+/// found with the command line, before anything is read or computed: throws Error as the writers of
+/// files do.
+void check_files_written(CLI::App& verb, std::initializer_list<const char*> options);
+void check_folder_written(CLI::App& verb, const char* option);
 
 /// Makes every numeric option of a program and its verbs take plain decimal numbers only. CLI11
 /// would read 010 as 8, 1e3 as 1 and 18446744073709551616 as the largest seed, wrap -1 around, and

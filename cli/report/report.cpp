@@ -18,6 +18,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "cli/program/machine.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -297,6 +298,8 @@ void add_report(CLI::App& app, Session& session) {
   verb->add_option("--figures", o->figures,
                    "folder for the figures of studies as SVG and PDF, for papers");
   verb->add_option("-o,--output", o->output, "HTML file")->required();
+  check_files_written(*verb, {"--output"});
+  check_folder_written(*verb, "--figures");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

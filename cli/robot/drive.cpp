@@ -240,6 +240,7 @@ void add_drive(CLI::App& app, Session& session) {
   verb->add_option("--truth", o->truth, "true trajectory of the left camera, TUM format");
   verb->add_option("--odometry", o->odometry, "the same by odometry, from the true start");
   verb->add_option("--plan", o->plan, "floor plan with both ways, SVG");
+  check_files_written(*verb, {"--output", "--truth", "--plan"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -212,6 +212,7 @@ void add_servo(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "one line a trial, CSV");
   verb->add_option("--plan", o->plan, "floor plan with the ways, SVG: red did not converge");
+  check_files_written(*verb, {"--output", "--plan"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

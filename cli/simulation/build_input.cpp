@@ -27,10 +27,9 @@ namespace {
 
 SeenViews seen_in_segments(const BuildInput& input) {
   const std::vector<SegmentsOfImage> images = read_segments(input.segments);
-  std::vector<std::filesystem::path> names;
-  for (const SegmentsOfImage& image : images) names.emplace_back(image.image);
   SeenViews seen;
-  const std::vector<FloorPose> at = floor_poses(input.at, names);
+  for (const SegmentsOfImage& image : images) seen.images.emplace_back(image.image);
+  const std::vector<FloorPose> at = floor_poses(input.at, seen.images);
   for (std::size_t i = 0; i < images.size(); ++i) {
     SegmentsOfView view{at[i].T_floor_camera, {}};
     for (const ImageSegmentInSpace& s : images[i].segments) {

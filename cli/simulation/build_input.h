@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct BuildInput {
 struct SeenViews {
   std::vector<SegmentsOfView> views;
   std::vector<Pose> T_floor_camera;
+  std::vector<std::filesystem::path> images;  ///< names of the views' images, if of `segments`
   std::size_t segments = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "calib/interval.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/simulation/export_tables.h"
@@ -71,6 +72,7 @@ void add_export(CLI::App& app, Session& session) {
   verb->add_flag("--trials", o->trials, "one row for each trial instead of each cell");
   verb->add_flag("--settings", o->settings, "all settings of a cell, not only those swept");
   verb->add_option("-o,--output", o->output, "table, .csv or .npy")->required();
+  check_files_written(*verb, {"--output"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -31,14 +31,6 @@ std::pair<int, int> up_axis(const std::string& word) {
 
 namespace {
 
-CameraPoses poses_of_camera(const std::string& file) {
-  CameraPoses read = read_camera_poses(file);
-  if (read.of_body) {
-    throw Error(file, "holds poses of the body, not of the camera", "give those of the camera");
-  }
-  return read;
-}
-
 FloorPose above_floor(const Pose& T_world_camera,
                       const FloorPoseOptions& options,
                       const std::string& place) {
@@ -66,7 +58,7 @@ FloorPose above_floor(const Pose& T_world_camera,
 std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
                                    const std::vector<std::filesystem::path>& images) {
   const std::vector<Pose> poses =
-      poses_of_images(poses_of_camera(options.poses), images, options.poses);
+      poses_of_images(read_poses_of_camera(options.poses), images, options.poses);
   std::vector<FloorPose> all;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     all.push_back(above_floor(poses[i], options, images[i].string()));
@@ -74,11 +66,11 @@ std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
   return all;
 }
 
-std::string tilt_doubt(const std::vector<Pose>& T_floor_camera) {
+std::string tilt_doubt(const std::vector<double>& down) {
   constexpr double unlikely_deg = 60;
   std::vector<double> tilts_deg;
-  for (const Pose& T : T_floor_camera) {  // the y axis of a level camera points down
-    tilts_deg.push_back(std::acos(std::clamp(-T.R(2, 1), -1.0, 1.0)) * 180 / std::numbers::pi);
+  for (const double part : down) {
+    tilts_deg.push_back(std::acos(std::clamp(part, -1.0, 1.0)) * 180 / std::numbers::pi);
   }
   const double tilt_deg = vernier::internal::median_or_zero(std::move(tilts_deg));
   return tilt_deg > unlikely_deg
@@ -88,7 +80,7 @@ std::string tilt_doubt(const std::vector<Pose>& T_floor_camera) {
 
 NamedFloorPoses all_floor_poses(const FloorPoseOptions& options) {
   NamedFloorPoses all;
-  for (const CameraPose& pose : poses_of_camera(options.poses).poses) {
+  for (const CameraPose& pose : read_poses_of_camera(options.poses).poses) {
     all.names.push_back(pose.image.empty() ? fmt::format("{}", all.names.size() + 1) : pose.image);
     all.poses.push_back(above_floor(pose.T_world_camera, options,
                                     fmt::format("{}: pose {}", options.poses, all.names.back())));

@@ -33,8 +33,9 @@ std::pair<int, int> up_axis(const std::string& word);
 std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
                                    const std::vector<std::filesystem::path>& images);
 
-/// What to say of cameras that are mostly held as none is; empty if there is nothing to say.
-std::string tilt_doubt(const std::vector<Pose>& T_floor_camera);
+/// What to say of cameras that are mostly held as none is; empty if there is nothing to say. `down`
+/// are the parts of their y axes that point to the floor: 1 of a level camera.
+std::string tilt_doubt(const std::vector<double>& down);
 
 /// All poses of the file in its order, with their images' names, or numbers from 1.
 struct NamedFloorPoses {

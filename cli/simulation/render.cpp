@@ -18,6 +18,7 @@
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
@@ -234,6 +235,7 @@ void add_render(CLI::App& app, Session& session) {
                  "compare what detectors and matchers make of the images with what the simulator's "
                  "sources assume: a table, comparison.html, comparison.json and sources.toml");
   verb->add_option("-o,--output", o->output, "output folder")->required();
+  check_folder_written(*verb, "--output");
   verb->callback([o, &session] {
     if (o->poses.empty() && o->pose_count == 0) {
       throw CLI::RequiredError("--pose or --poses");

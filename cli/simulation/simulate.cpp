@@ -21,6 +21,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -37,6 +38,7 @@
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/study/reconstruct.h"
+#include "sim/study/settings_reader.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -51,9 +53,21 @@ struct SimulateArguments {
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
   std::uint32_t trial = 0;
+  std::string sources_file;
   std::vector<std::string> sources;
   SimulatedViewOptions views;
 };
+
+/// Those of --sources, then of --source.
+SourceSettings simulated_sources(const SimulateArguments& options, SourceSettings settings) {
+  if (!options.sources_file.empty()) {
+    if (!options.sources.empty() && options.sources.front() == "none") {
+      throw Error("--source none", "would override --sources", "leave one out");
+    }
+    read_sources_file(options.sources_file, settings);
+  }
+  return sources_of(options.sources, settings);
+}
 
 /// A camera stands above the floor; the origin of a file of poses may lie anywhere.
 void check_height(const SimulateArguments& options) {
@@ -87,9 +101,9 @@ void run_views(const SimulateArguments& options, Session& session) {
   SourceSettings initial;
   initial.calibration = 0;
   initial.epipolar_reject_deg = 0;  // depths are known along rows too
-  const SourceSettings sources = sources_of(options.sources, initial);
+  const SourceSettings sources = simulated_sources(options, initial);
   if (sources.calibration > 0) {
-    throw Error("--source calibration", "is given for a camera with depth maps, which has no pair",
+    throw Error("source calibration", "is given for a camera with depth maps, which has no pair",
                 "leave it out; --depth-sigma-per-m2 is the error of its depths");
   }
   const std::filesystem::path file = find_world(options.world);
@@ -100,6 +114,9 @@ void run_views(const SimulateArguments& options, Session& session) {
                                                            : VisibilityMethod::view_sets);
   });
   SimulatedViewOptions views = options.views;
+  for (const std::string* output : {&views.output, &views.segments}) {
+    if (!output->empty()) check_output_is_not_input({options.sources_file}, *output);
+  }
   views.at.height_m = options.height_m;
   simulate_views(visibility, file, options.rig, sources,
                  {.seed = options.seed, .trial = options.trial}, views, session);
@@ -117,7 +134,7 @@ void run(const SimulateArguments& options, const CLI::App& verb, Session& sessio
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   SourceSettings initial;
   initial.calibration = 0;
-  const SourceSettings sources = sources_of(options.sources, initial);
+  const SourceSettings sources = simulated_sources(options, initial);
   const std::filesystem::path file = find_world(options.world);
   World world = with_errors_of(file.string(), [&] { return build_world(read_world(file)); });
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
@@ -216,6 +233,8 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(finite)
       ->capture_default_str();
+  verb->add_option("--sources", o->sources_file,
+                   "file with a table [sources], as characterise writes it; --source comes after");
   verb->add_option("--source", o->sources,
                    "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
   verb->add_option(
@@ -225,6 +244,7 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("--trial", o->trial, "number of the random draw for this seed")
       ->capture_default_str();
+  check_files_written(*verb, {"--features", "--segments", "--picture"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

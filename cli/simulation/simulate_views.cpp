@@ -119,9 +119,9 @@ void simulate_views(const Visibility& visibility,
     progress.update(static_cast<int>(i + 1), static_cast<int>(all.poses.size()));
   }
   outputs.commit();
-  std::vector<Pose> T_floor_camera;
-  for (const FloorPose& pose : all.poses) T_floor_camera.push_back(pose.T_floor_camera);
-  if (const std::string doubt = tilt_doubt(T_floor_camera); !doubt.empty()) {
+  std::vector<double> down;
+  for (const FloorPose& pose : all.poses) down.push_back(pose.level.R_level_camera(1, 1));
+  if (const std::string doubt = tilt_doubt(down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
   report(edges, lines, sensor.baseline_m(), options.output, session);

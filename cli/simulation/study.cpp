@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "cli/program/machine.h"
 #include "cli/program/session.h"
@@ -48,6 +49,7 @@ void run(const StudyArguments& options, Session& session) {
     throw Error("study", "no output folder given", "give -o DIR");
   }
   const fs::path file = options.words[0];
+  if (!fs::is_directory(options.folder)) check_writable_folder(options.folder);
   StudyProcesses processes;
   if (processes.only_computes()) return processes.compute(file, options.threads, session);
   StudyRun job;
@@ -70,6 +72,7 @@ void merge(const StudyArguments& options, Session& session) {
   if (options.folder.empty() || options.words.size() < 2) {
     throw Error("study merge", "give the folders to merge and -o DIR", "");
   }
+  check_writable_folder(options.folder);
   merge_studies({options.words.begin() + 1, options.words.end()}, options.folder,
                 options.other_instruction_sets(), session);
 }

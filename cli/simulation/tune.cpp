@@ -7,6 +7,7 @@
 
 #include "calib/base/output_files.h"
 #include "calib/error.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/simulation/study_processes.h"
 #include "cli/simulation/tune_result.h"
@@ -41,6 +42,7 @@ void add_tune(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_flag("--allow-other-instruction-set", o->allow_other_instruction_set,
                  "accept results of another kind of processor, though not identical to the bit");
+  check_folder_written(*verb, "--output");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

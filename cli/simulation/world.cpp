@@ -254,6 +254,7 @@ void add_world(CLI::App& app, Session& session) {
                     "length,width,height in metres of the whole (default: what suits the kind)");
   maker->add_option("--name", o->name, "name of the world");
   maker->add_option("-o,--output", o->output, "world file")->required();
+  check_files_written(*maker, {"--output"});
   maker->callback([o, &session] { session.action = [=, &session] { make(*o, session); }; });
 
   auto i = std::make_shared<InfoOptions>();
@@ -267,6 +268,7 @@ void add_world(CLI::App& app, Session& session) {
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
+  check_files_written(*info_verb, {"--plan"});
   info_verb->callback([i, &session] { session.action = [=, &session] { info(*i, session); }; });
 
   auto e = std::make_shared<ExportOptions>();
@@ -275,6 +277,7 @@ void add_world(CLI::App& app, Session& session) {
                "vernier world export workshop -o workshop.ply");
   exporter->add_option("world", e->world, "world file, or a shipped name")->required();
   exporter->add_option("-o,--output", e->output, "file that ends in .obj or .ply")->required();
+  check_files_written(*exporter, {"--output"});
   exporter->callback(
       [e, &session] { session.action = [=, &session] { write_exported(*e, session); }; });
 
@@ -288,6 +291,7 @@ void add_world(CLI::App& app, Session& session) {
   router->add_option("--height-m", r->eye_height_m, "height of the robot's camera, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
+  check_files_written(*router, {"--output", "--plan"});
   router->callback([r, &session] { session.action = [=, &session] { route(*r, session); }; });
 
   add_world_sets(*verb, session);

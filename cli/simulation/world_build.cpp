@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@
 #include "cli/simulation/floor_poses.h"
 #include "cli/simulation/plan_picture.h"
 #include "localise/joined_lines.h"
+#include "localise/views/depth_maps.h"
 #include "sim/built/built_world.h"
 #include "sim/built/depth_cloud.h"
 #include "sim/built/planar_patches.h"
@@ -44,30 +46,26 @@ namespace {
 struct BuildArguments {
   BuildInput input;
   std::string depth, output, lines, plan, name;
-  double depth_unit_m = 0.001;
+  double depth_unit_m = 0.001, upright_deg = 2;
   JoinOptions join;
   DepthCloudOptions cloud;
   BuiltWorldOptions how;
 };
 
-/// Surfaces of the depth maps, which belong to the views in order.
+/// Surfaces of the depth maps among `files`, each of which belongs to an image of the views.
 std::vector<Patch> patches_of(const BuildArguments& options,
-                              const std::vector<std::filesystem::path>& maps,
-                              const std::vector<Pose>& T_floor_camera,
+                              const std::vector<std::filesystem::path>& files,
+                              const SeenViews& seen,
                               Session& session) {
-  if (maps.size() != T_floor_camera.size()) {
-    throw Error("--depth",
-                fmt::format("matches {} maps, and there are {} images of segments", maps.size(),
-                            T_floor_camera.size()),
-                "give the map of each image, in the same order by name");
-  }
+  const std::vector<std::filesystem::path> maps =
+      depth_maps_of_images(seen.images, files, "--depth " + options.depth);
   const ReadRig rig = read_named_rig(options.input.rig, session, maps.front().string());
   DepthCloud cloud(options.cloud);
   Progress progress(session, "depth maps");
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const DepthImage depth = read_depth_image(maps[i], options.depth_unit_m);
     with_errors_of(maps[i].string(), [&] {
-      cloud.add(depth, rig.estimate.rig.cameras.at(0), T_floor_camera[i]);
+      cloud.add(depth, rig.estimate.rig.cameras.at(0), seen.T_floor_camera[i]);
       return 0;
     });
     progress.update(static_cast<int>(i + 1), static_cast<int>(maps.size()));
@@ -75,16 +73,16 @@ std::vector<Patch> patches_of(const BuildArguments& options,
   return planar_patches(cloud);
 }
 
-/// The world's segments with their covariance, as a table.
-std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_lines) {
+/// The lines of the world's segments, as measured, with their covariance, as a table.
+std::string lines_csv(const JoinedLines& joined, const BuiltWorld& built) {
   std::string text = "segment,views,sightings,chi2,a_x_m,a_y_m,a_z_m,b_x_m,b_y_m,b_z_m";
   constexpr std::array names{"ax", "ay", "az", "bx", "by", "bz"};
   for (int i = 0; i < 6; ++i) {
     for (int k = i; k < 6; ++k) text += fmt::format(",{}_{}_m2", names[i], names[k]);
   }
-  text += '\n';
-  for (std::size_t s = 0; s < of_lines.size(); ++s) {
-    const JoinedLine& line = joined.lines[of_lines[s]];
+  text += ",upright\n";
+  for (std::size_t s = 0; s < built.of_lines.size(); ++s) {
+    const JoinedLine& line = joined.lines[built.of_lines[s]];
     text += fmt::format("{},{},{},{:.4g}", s, line.views, line.sightings.size(), line.chi2);
     for (const Eigen::Vector3d* end : {&line.a_m, &line.b_m}) {
       for (int k = 0; k < 3; ++k) text += fmt::format(",{:.6f}", (*end)[k]);
@@ -92,7 +90,8 @@ std::string lines_csv(const JoinedLines& joined, const std::vector<int>& of_line
     for (int i = 0; i < 6; ++i) {
       for (int k = i; k < 6; ++k) text += fmt::format(",{:.6g}", line.covariance_m2(i, k));
     }
-    text += '\n';
+    const auto& [a_m, b_m] = built.world.loose.segments_m[s];
+    text += a_m.head<2>() == b_m.head<2>() ? ",1\n" : ",0\n";
   }
   return text;
 }
@@ -157,7 +156,9 @@ void check_outputs(const BuildArguments& options, const std::vector<std::filesys
 /// Views of a wrong pose see each other's lines elsewhere.
 void doubt_poses(const SeenViews& seen, const JoinedLines& joined, Session& session) {
   constexpr double least_again = 0.35;
-  if (const std::string doubt = tilt_doubt(seen.T_floor_camera); !doubt.empty()) {
+  std::vector<double> down;
+  for (const Pose& T : seen.T_floor_camera) down.push_back(-T.R(2, 1));
+  if (const std::string doubt = tilt_doubt(down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
   const auto again = std::count_if(joined.lines.begin(), joined.lines.end(),
@@ -197,23 +198,19 @@ void report(const BuildArguments& options,
                                           options.how.min_sightings));
   }
   const double route_m = route_length_m(world.route);
-  Json json{{"file", options.output},
-            {"views", seen.views.size()},
-            {"segments", seen.segments},
-            {"joined", r.joined},
-            {"lines", r.lines},
-            {"surfaces", r.surfaces},
-            {"surfaces_on_the_way", r.on_the_way},
-            {"hidden_share", hidden},
-            {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
-            {"route_m", route_m},
-            {"doubts", session.trust_warnings()}};
+  Json json{{"file", options.output},    {"views", seen.views.size()},
+            {"segments", seen.segments}, {"joined", r.joined},
+            {"lines", r.lines},          {"upright", r.upright},
+            {"surfaces", r.surfaces},    {"surfaces_on_the_way", r.on_the_way},
+            {"hidden_share", hidden},    {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
+            {"route_m", route_m},        {"doubts", session.trust_warnings()}};
   session.result(json, fmt::format("{} views, {} segments: {} lines joined, {} of them seen by {} "
-                                   "views at least\n{} surfaces ({} more left out where the "
+                                   "views at least, of which {} are upright as far as is known\n{} "
+                                   "surfaces ({} more left out where the "
                                    "cameras passed), which hide {:.1f} % of what the views saw; "
                                    "route of {:.1f} m\nwritten to {}\n",
                                    seen.views.size(), seen.segments, r.joined, r.lines,
-                                   options.how.min_sightings, r.surfaces, r.on_the_way,
+                                   options.how.min_sightings, r.upright, r.surfaces, r.on_the_way,
                                    100 * hidden, route_m, options.output));
 }
 
@@ -224,19 +221,21 @@ void run(const BuildArguments& options, const CLI::App& verb, Session& session) 
   check_outputs(options, maps);
   const SeenViews seen = seen_views(options.input, session);
   const std::vector<Patch> patches =
-      maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen.T_floor_camera, session);
+      maps.empty() ? std::vector<Patch>{} : patches_of(options, maps, seen, session);
   const std::string& source =
       options.input.features.empty() ? options.input.segments : options.input.features;
   const JoinedLines joined =
       with_errors_of(source, [&] { return join_lines(seen.views, options.join); });
-  BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, options.how);
+  BuiltWorldOptions how = options.how;
+  how.upright_rad = options.upright_deg * std::numbers::pi / 180;
+  BuiltWorld built = built_world(joined, patches, seen.T_floor_camera, how);
   built.world.name =
       options.name.empty() ? std::filesystem::path(source).stem().string() : options.name;
   const World world = build_world(built.world);
   const double hidden = hidden_share(world, joined, built, seen);
   OutputFiles outputs;
   outputs.add(options.output, format_world(built.world));
-  if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built.of_lines));
+  if (!options.lines.empty()) outputs.add(options.lines, lines_csv(joined, built));
   if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
   outputs.commit();
   if (world.surfaces.empty()) {
@@ -282,6 +281,10 @@ void add_world_build(CLI::App& world, Session& session) {
           "how far surfaces stand back from the cameras, so that their noise hides no line")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  verb->add_option("--upright-deg", o->upright_deg,
+                   "lines that lean by less, and within their uncertainty, are upright (0: none)")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   verb->add_option("--min-sightings", o->how.min_sightings, "views that must have seen a line")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -302,6 +305,7 @@ void add_world_build(CLI::App& world, Session& session) {
   verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
   verb->add_option("--name", o->name, "name of the world");
   verb->add_option("-o,--output", o->output, "world file")->required();
+  check_files_written(*verb, {"--output", "--lines", "--plan"});
   verb->callback(
       [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }

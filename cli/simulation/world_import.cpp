@@ -267,6 +267,7 @@ void add_world_import(CLI::App& world, Session& session) {
       ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
+  check_files_written(*verb, {"--output", "--plan"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

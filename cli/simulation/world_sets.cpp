@@ -114,6 +114,7 @@ void add_world_sets(CLI::App& world, Session& session) {
   verb->add_option("--poses", o->poses, "at which the sets are compared with exact visibility")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  check_files_written(*verb, {"--output"});
   verb->callback([o, &session] { session.action = [=, &session] { make_sets(*o, session); }; });
 }
 

@@ -250,6 +250,7 @@ void add_world_view(CLI::App& world, Session& session) {
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
+  check_files_written(*verb, {"--output"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -159,6 +159,7 @@ void add_characterise(CLI::App& app, Session& session) {
   verb->add_flag("--repair", o->repair, "correct the vertical misalignment estimated from corners");
   verb->add_option("--seed", o->seed, "random seed of the bootstrap")->capture_default_str();
   add_sequence_options(*verb, o->sequence);
+  check_files_written(*verb, {"--output"});
   verb->callback([o, verb, &session] {
     if (o->sequence.segments.empty()) require_scenes(*verb, o->scenes);
     session.action = [=, &session] {

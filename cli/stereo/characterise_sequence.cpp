@@ -23,6 +23,7 @@
 #include "cli/program/session.h"
 #include "cli/stereo/sequence_report.h"
 #include "localise/views/camera_poses.h"
+#include "localise/views/depth_maps.h"
 #include "localise/views/segments_file.h"
 #include "sim/sequence/measured_sequence.h"
 #include "sim/sequence/sequence_file.h"
@@ -45,39 +46,25 @@ constexpr std::array of_pairs{
 constexpr std::array of_sequence{"--poses",       "--rig",           "--depth",  "--depth-unit-m",
                                  "--other-views", "--bracket-views", "--block-m"};
 
-std::vector<SequenceView> read_sequence(const SequenceArguments& options) {
-  const std::vector<SegmentsOfImage> images = read_segments(options.segments);
-  std::vector<std::filesystem::path> names;
-  names.reserve(images.size());
-  for (const SegmentsOfImage& image : images) names.emplace_back(image.image);
-  const CameraPoses poses = read_camera_poses(options.poses);
-  if (poses.of_body) {
-    throw Error(options.poses, "holds poses of the body, not of the camera",
-                "give those of the camera");
-  }
-  const std::vector<Pose> T_world_camera = poses_of_images(poses, names, options.poses);
+/// The views with the names of their images.
+struct ReadSequence {
   std::vector<SequenceView> views;
+  std::vector<std::filesystem::path> images;
+};
+
+ReadSequence read_sequence(const SequenceArguments& options) {
+  const std::vector<SegmentsOfImage> images = read_segments(options.segments);
+  ReadSequence read;
+  for (const SegmentsOfImage& image : images) read.images.emplace_back(image.image);
+  const std::vector<Pose> T_world_camera =
+      poses_of_images(read_poses_of_camera(options.poses), read.images, options.poses);
   for (std::size_t i = 0; i < images.size(); ++i) {
-    views.push_back({T_world_camera[i], {}});
+    read.views.push_back({T_world_camera[i], {}});
     for (const ImageSegmentInSpace& s : images[i].segments) {
-      if (s.reliable) views.back().segments.push_back({s.image_px, s.in_space});
+      if (s.reliable) read.views.back().segments.push_back({s.image_px, s.in_space});
     }
   }
-  return views;
-}
-
-/// The maps of all images, in order by name.
-std::vector<std::filesystem::path> depth_maps(const SequenceArguments& options,
-                                              std::size_t images) {
-  if (options.depth.empty()) return {};
-  std::vector<std::filesystem::path> maps = matching_files(options.depth);
-  if (maps.size() != images) {
-    throw Error(
-        "--depth",
-        fmt::format("matches {} maps, and there are {} images of segments", maps.size(), images),
-        "give the map of each image, in the same order by name");
-  }
-  return maps;
+  return read;
 }
 
 DepthImage depth_of(const std::filesystem::path& file, const Camera& camera, double unit_m) {
@@ -200,9 +187,14 @@ void characterise_sequence(const SequenceArguments& options,
                            const std::string& output,
                            std::uint64_t seed,
                            Session& session) {
-  const std::vector<SequenceView> views = read_sequence(options);
-  const std::vector<std::filesystem::path> maps = depth_maps(options, views.size());
-  check_output(options, maps, output);
+  const auto [views, images] = read_sequence(options);
+  std::vector<std::filesystem::path> maps;
+  if (!options.depth.empty()) {
+    const std::vector<std::filesystem::path> files = matching_files(options.depth);
+    check_output(options, files, output);
+    maps = depth_maps_of_images(images, files, "--depth " + options.depth);
+  }
+  check_output(options, {}, output);
   const ReadRig rig = read_named_rig(options.rig, session, maps.empty() ? "" : maps[0].string());
   const Camera& camera = rig.estimate.rig.cameras.at(0);
   DepthOfView depth;

@@ -349,6 +349,8 @@ void add_evaluate(CLI::App& app, Session& session) {
                    "the same coloured by error: green up to 0.5 px, yellow up to 1 px, orange up "
                    "to 3 px, red above; blue: no match, black: not evaluated")
       ->check(png_name);
+  check_files_written(*verb, {"--picture"});
+  check_folder_written(*verb, "--output");
   verb->callback([o, verb, &session] {
     require_scenes(*verb, o->scenes);
     session.action = [=, &session] { run(*o, session); };

@@ -287,6 +287,7 @@ void add_match(CLI::App& app, Session& session) {
                    "(shortest) to blue (longest)")
       ->check(png_name);
   verb->add_option("-o,--output", o->output, "output CSV file of matched pairs")->required();
+  check_files_written(*verb, {"--output", "--picture"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

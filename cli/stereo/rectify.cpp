@@ -317,6 +317,7 @@ void add_rectify(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "output folder for left.png, right.png and rig.json")
       ->required();
+  check_folder_written(*verb, "--output");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -342,6 +342,8 @@ void add_stereo(CLI::App& app, Session& session) {
                    "output folder for edges.csv, segments.csv, segments.json and segments.ply")
       ->check(not_empty)
       ->required();
+  check_files_written(*verb, {"--picture"});
+  check_folder_written(*verb, "--output");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -104,6 +104,7 @@ void add_sample(CLI::App& app, Session& session) {
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("-o,--output", o->output, "CSV file with the parameter names as header")
       ->required();
+  check_files_written(*verb, {"--output"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

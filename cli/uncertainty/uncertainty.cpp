@@ -130,6 +130,7 @@ void add_uncertainty(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("-o,--output", o->output, "output folder for tables (CSV), maps (SVG) and JSON");
+  check_folder_written(*verb, "--output");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -53,8 +53,7 @@ void check(const SightedSegment& s, const Pose& T_world_camera, std::size_t view
   if (!finite || skew() > 1e-6 * s.covariance_m2.norm()) {
     throw Error(place, "has a covariance that is not finite or not symmetric", "correct it");
   }
-  const auto values = s.covariance_m2.selfadjointView<Eigen::Lower>().eigenvalues();
-  if (values[0] < -1e-9 * values[5] || !(values[5] > 0)) {
+  if (!is_semidefinite(s.covariance_m2)) {
     throw Error(place, "has a covariance that is not positive semidefinite", "correct it");
   }
 }

@@ -3,6 +3,7 @@
 #include "localise/join/line_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,12 @@ using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+bool is_semidefinite(const Matrix6d& covariance_m2) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covariance_m2, Eigen::EigenvaluesOnly);
+  const auto& values = solver.eigenvalues();
+  return values[0] >= -1e-9 * values[5] && values[5] > 0;
+}
 
 WorldSighting in_world(const SightedSegment& segment, const Pose& T, const JoinOptions& options) {
   WorldSighting sighting;

@@ -18,6 +18,10 @@ struct WorldSighting {
   Eigen::Matrix<double, 6, 6> covariance_m2;
 };
 
+/// Whether a symmetric matrix has no eigenvalue below 0 (1e-9 of the largest are rounding), and one
+/// above.
+bool is_semidefinite(const Eigen::Matrix<double, 6, 6>& covariance_m2);
+
 WorldSighting in_world(const SightedSegment& segment,
                        const Pose& T_world_camera,
                        const JoinOptions& options);

@@ -244,6 +244,15 @@ CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder) {
   return read;
 }
 
+CameraPoses read_poses_of_camera(const std::filesystem::path& file_or_folder) {
+  CameraPoses read = read_camera_poses(file_or_folder);
+  if (read.of_body) {
+    throw Error(file_or_folder.string(), "holds poses of the body, not of the camera",
+                "give those of the camera");
+  }
+  return read;
+}
+
 std::vector<Pose> poses_of_images(const CameraPoses& poses,
                                   const std::vector<std::filesystem::path>& images,
                                   const std::string& place,

@@ -37,6 +37,9 @@ struct CameraPoses {
 /// Positions are in metres. Throws Error with file and line.
 CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder);
 
+/// The same where a pose of the body is of no use: throws Error for poses of one too.
+CameraPoses read_poses_of_camera(const std::filesystem::path& file_or_folder);
+
 /// The time in the name of an image without its ending: seconds, or, from 16 digits on, nanoseconds
 /// as ASL has them.
 std::optional<double> time_of_name(const std::string& stem);

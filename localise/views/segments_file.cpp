@@ -12,6 +12,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
+#include "localise/join/line_fit.h"
 #include "localise/joined_lines.h"
 #include "localise/views/depth_view.h"
 #include "localise/views/view_json.h"
@@ -47,6 +48,9 @@ Eigen::Matrix<double, 6, 6> covariance(const JsonNode& node) {
     throw Error(node.place(), "is not symmetric, or has a variance that is not from 0 to 1e6 m2",
                 "correct it");
   }
+  if (!is_semidefinite(C)) {
+    throw Error(node.place(), "is not positive semidefinite", "correct it");
+  }
   return C;
 }
 
@@ -58,6 +62,10 @@ ImageSegmentInSpace parse_segment(const JsonNode& node) {
     throw Error(node.at("image_px").place(), "is not four numbers up to 1e6", "give u, v, u, v");
   }
   segment.image_px = {px.head<2>(), px.tail<2>()};
+  if (!(segment.image_px.length_px() > 1e-6)) {
+    throw Error(node.at("image_px").place(), "its ends are the same pixel",
+                "leave the segment out");
+  }
   segment.in_space = {point(node.at("a_m")), point(node.at("b_m")),
                       covariance(node.at("covariance_m2"))};
   if (!((segment.in_space.b_m - segment.in_space.a_m).norm() > 1e-6)) {

@@ -30,9 +30,9 @@ struct SegmentsOfImage {
 SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segments);
 
 /// Reads such images, one a line of JSON (docs/file-formats.md, `lines --segments`). Throws Error
-/// naming file, line and key for what is malformed, not finite, beyond 1,000 m or of no length, for
-/// a covariance that is not symmetric or has a variance below 0, and for more than 100,000 images
-/// or 100,000 segments in one.
+/// naming file, line and key for what is malformed, not finite, beyond 1,000 m or of no length, in
+/// space or in the image, for a covariance that is not symmetric or not positive semidefinite, and
+/// for more than 100,000 images or 100,000 segments in one.
 std::vector<SegmentsOfImage> read_segments(const std::filesystem::path& file);
 
 /// One line of such a file, with its end.

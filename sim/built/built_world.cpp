@@ -12,6 +12,7 @@
 #include "calib/pose.h"
 #include "localise/joined_lines.h"
 #include "sim/built/planar_patches.h"
+#include "sim/built/upright_line.h"
 #include "sim/import/camera_path.h"
 #include "sim/world.h"
 #include "sim/world/plan_distance.h"
@@ -67,22 +68,50 @@ std::optional<double> floor_height(const std::vector<Patch>& patches) {
   return {};
 }
 
-/// Whether a polygon comes nearer to the way than `radius_m` on the plan.
-bool is_near(const std::vector<Vector3d>& polygon_m,
-             const std::vector<Vector2d>& way_m,
-             double radius_m) {
-  return std::any_of(way_m.begin(), way_m.end(), [&](const Vector2d& at) {
-    bool inside = true;
-    double sign = 0;
-    for (std::size_t i = 0, j = polygon_m.size() - 1; i < polygon_m.size(); j = i++) {
-      const Vector2d a = polygon_m[j].head<2>(), b = polygon_m[i].head<2>();
-      if (plan_distance(at, a, b) < radius_m) return true;
-      const double side = (b - a).x() * (at - a).y() - (b - a).y() * (at - a).x();
-      inside &= sign * side >= 0;
-      if (side != 0) sign = side;
+/// A straight piece of the cameras' way on the floor plan, or one of their places.
+struct Step {
+  Vector2d from_m, to_m;
+};
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+bool meet(const Step& step, const Vector2d& a, const Vector2d& b) {
+  const auto parts = [](const Vector2d& p, const Vector2d& q, const Vector2d& c,
+                        const Vector2d& d) {
+    return cross(q - p, c - p) * cross(q - p, d - p) < 0;
+  };
+  return parts(step.from_m, step.to_m, a, b) && parts(a, b, step.from_m, step.to_m);
+}
+
+/// Whether a convex polygon comes nearer to a step than `radius_m` on the plan.
+bool is_near(const std::vector<Vector3d>& polygon_m, const Step& step, double radius_m) {
+  bool inside = true;
+  double sign = 0;
+  for (std::size_t i = 0, j = polygon_m.size() - 1; i < polygon_m.size(); j = i++) {
+    const Vector2d a = polygon_m[j].head<2>(), b = polygon_m[i].head<2>();
+    if (meet(step, a, b) || plan_distance(step.from_m, a, b) < radius_m ||
+        plan_distance(step.to_m, a, b) < radius_m ||
+        plan_distance(a, step.from_m, step.to_m) < radius_m) {
+      return true;
     }
-    return inside;
-  });
+    const double side = cross(b - a, step.from_m - a);
+    inside &= sign * side >= 0;
+    if (side != 0) sign = side;
+  }
+  return inside;
+}
+
+/// Where the cameras were, and their way between, as far as the route has it.
+std::vector<Step> steps_of(std::span<const Pose> T_world_camera,
+                           const std::vector<RouteLeg>& route) {
+  std::vector<Step> steps;
+  for (const Pose& T : T_world_camera) steps.push_back({T.t.head<2>(), T.t.head<2>()});
+  for (const RouteLeg& leg : route) {
+    for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
+      steps.push_back({leg.points_m[i - 1], leg.points_m[i]});
+    }
+  }
+  return steps;
 }
 
 }  // namespace
@@ -98,17 +127,21 @@ BuiltWorld built_world(const localise::JoinedLines& lines,
     const localise::JoinedLine& line = lines.lines[i];
     if (line.views < options.min_sightings) continue;
     if ((line.b_m - line.a_m).norm() < options.shortest_m) continue;
-    features.segments_m.emplace_back(line.a_m, line.b_m);
+    auto& [a_m, b_m] = features.segments_m.emplace_back(line.a_m, line.b_m);
+    if (options.upright_rad > 0 && may_be_upright(line, options.upright_rad)) {
+      make_upright(a_m, b_m);
+      ++built.report.upright;
+    }
     built.of_lines.push_back(static_cast<int>(i));
   }
   std::vector<PathCamera> cameras;
-  std::vector<Vector2d> way;
   double highest_m = 0;
   for (const Pose& T : T_world_camera) {
     cameras.push_back({"", T.inverse()});
-    way.emplace_back(T.t.head<2>());
     highest_m = std::max(highest_m, T.t.z());
   }
+  built.world.route = route_of(cameras, 1, Vector2d::Zero());
+  const std::vector<Step> way = steps_of(T_world_camera, built.world.route);
   constexpr double above_camera_m = 0.2;
   for (const Patch& patch : patches) {
     std::vector<Vector3d> polygon = patch.polygon_m;
@@ -120,13 +153,13 @@ BuiltWorld built_world(const localise::JoinedLines& lines,
       if (!is_floor) p -= options.recede_m * patch.normal;
     }
     if (!is_floor && low < highest_m + above_camera_m && high > 0 &&
-        is_near(polygon, way, options.walked_m)) {
+        std::any_of(way.begin(), way.end(),
+                    [&](const Step& step) { return is_near(polygon, step, options.walked_m); })) {
       ++built.report.on_the_way;
       continue;
     }
     features.surfaces_m.push_back(std::move(polygon));
   }
-  built.world.route = route_of(cameras, 1, Vector2d::Zero());
   built.report.lines = features.segments_m.size();
   built.report.surfaces = features.surfaces_m.size();
   built.report.floor_m = floor_height(patches);

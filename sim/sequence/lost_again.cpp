@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calib/statistics/cluster_interval.h"
 #include "sim/sequence/sequence_samples.h"
 #include "sim/sources/clustered_samples.h"
 #include "sim/sources/measured_sources.h"
@@ -136,13 +137,19 @@ LossesAlike losses_alike(const std::vector<ExpectedSample>& expected,
     all.add(key.first, pairs);
     lost += static_cast<int>(pairs.first_lost);
   }
-  const auto value = [&](double FittedLosses::*figure) {
-    MeasuredValue v =
-        measured(all, options, [&](const std::vector<Pairs>& s) { return fitted(s).*figure; });
-    v.samples = lost;
-    return v;
+  LossesAlike alike;
+  alike.correlation.samples = alike.side_m.samples = lost;
+  if (all.count() < options.min_samples) return alike;
+  const FittedLosses fit = fitted(all.all());
+  const auto of_drawn = [&](std::span<const std::size_t> drawn) {
+    const FittedLosses of_blocks = fitted(all.taken(drawn));
+    return std::vector<double>{of_blocks.correlation, of_blocks.side_m};
   };
-  return {value(&FittedLosses::correlation), value(&FittedLosses::side_m)};
+  const auto intervals =
+      vernier::internal::cluster_intervals(all.clusters(), 2, of_drawn, options.bootstrap);
+  alike.correlation = {fit.correlation, intervals[0], lost};
+  alike.side_m = {fit.side_m, intervals[1], lost};
+  return alike;
 }
 
 std::vector<LostAgain> lost_again(const std::vector<ExpectedSample>& expected,

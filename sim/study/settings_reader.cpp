@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/atomic_file.h"
 #include "calib/base/program_run.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -209,6 +211,19 @@ ExperimentSettings SettingsReader::read_settings(const toml::table& root,
     read_histograms(*histograms, of_image ? options.image_histograms : options.histograms);
   }
   return settings;
+}
+
+void read_sources_file(const std::filesystem::path& file, SourceSettings& sources) {
+  const toml::table theirs =
+      vernier::internal::parse_toml(vernier::internal::read_whole(file), file.string());
+  const SettingsReader reader(file.string());
+  reader.check_keys(theirs, {"sources"}, "");
+  const toml::table& values =
+      reader.table(reader.required(theirs, "sources", "the file"), "[sources]");
+  if (const auto* further = values.get("file")) {
+    reader.fail(*further, "sources.file in a sources file is not allowed", "copy the values here");
+  }
+  reader.read_sources(values, sources);
 }
 
 }  // namespace vernier::sim::internal

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <string>
 
 #include "calib/base/toml_reader.h"
@@ -62,5 +63,10 @@ class SettingsReader : public vernier::internal::TomlReader {
   void read_histograms(const toml::table& table, localise::PghOptions& options) const;
   void read_program(const toml::table& table, ExperimentSettings& settings) const;
 };
+
+/// Applies a file whose table [sources] holds settings as a study's does, such as `characterise`
+/// writes, to `sources`. Throws Error with file and line for anything else in it, and for a `file`
+/// of its own.
+void read_sources_file(const std::filesystem::path& file, SourceSettings& sources);
 
 }  // namespace vernier::sim::internal

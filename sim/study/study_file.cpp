@@ -112,15 +112,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
     fail(*node, "sources.file: no such file: " + file.string(),
          "give the path relative to the study file");
   }
-  const toml::table theirs = parse_toml(read_whole(file), file.string());
-  const SettingsReader reader(file.string());
-  reader.check_keys(theirs, {"sources"}, "");
-  const toml::node& sources = reader.required(theirs, "sources", "the file");
-  const toml::table& values = reader.table(sources, "[sources]");
-  if (const auto* further = values.get("file")) {
-    reader.fail(*further, "sources.file in a sources file is not allowed", "copy the values here");
-  }
-  reader.read_sources(values, sources_);
+  vernier::sim::internal::read_sources_file(file, sources_);
   return file;
 }
 

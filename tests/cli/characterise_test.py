@@ -123,6 +123,14 @@ class Sequence(unittest.TestCase):
             self.assertIn(word, text)
         self.assertEqual(self.call(*SEQUENCE, '-q').stdout, text)
 
+    def test_images_left_out_may_have_depth_maps(self):
+        lines = (self.folder / 'wall.segments').read_text().splitlines()
+        (self.folder / 'wall.segments').write_text('\n'.join(lines[:7] + lines[8:]) + '\n')
+        with_its_map = self.call(*SEQUENCE, '-q', '--json')
+        self.assertEqual(with_its_map.returncode, 0, with_its_map.stderr)
+        (self.folder / 'wall07.png').unlink()
+        self.assertEqual(self.call(*SEQUENCE, '-q', '--json').stdout, with_its_map.stdout)
+
     def test_poses_of_other_images_are_noticed(self):
         lines = (self.folder / 'wall.csv').read_text().splitlines()
         (self.folder / 'wall.csv').write_text('\n'.join(  # as if it had gone the other way
@@ -155,7 +163,7 @@ class Sequence(unittest.TestCase):
         complains('no --sequence', 'characterise', '--scenes', 'pairs.toml', '--poses', 'wall.csv')
         complains('no depth maps', *SEQUENCE[:-2], '--depth-unit-m', '0.01')
         complains('size', *SEQUENCE[:-2])  # of which K says nothing
-        complains('1 maps', *SEQUENCE[:-1], 'wall00.png')
+        complains('wall00.png: has no map of "wall01.png" and 18 more of the 20 images', *SEQUENCE[:-1], 'wall00.png')
         complains('wall.segments', *SEQUENCE, '-o', 'wall.segments')
         complains('wall03.png', *SEQUENCE, '-o', 'wall03.png')
         (self.folder / 'wall07.png').write_bytes(b'')

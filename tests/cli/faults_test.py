@@ -122,7 +122,7 @@ class Disk(FaultCase):
         self.assertGreater(len(self.made()), 20)
 
 
-class Permission(FaultCase):
+class OtherCase(FaultCase):
     """As somebody who may not write everywhere; root becomes nobody for it."""
 
     def setUp(self):
@@ -140,6 +140,8 @@ class Permission(FaultCase):
         return subprocess.run([*self.others, cli_test.PROGRAM, *map(str, words)], cwd=self.folder,
                               capture_output=True, text=True, **more)
 
+
+class Permission(OtherCase):
     def test_a_folder_that_may_not_be_written(self):
         locked = self.folder / 'locked'
         locked.mkdir()
@@ -180,6 +182,47 @@ class Permission(FaultCase):
                     'sh matcher.sh {left} {right} {output}.pfm',
                     env=dict(os.environ, TMPDIR=str(self.folder / name)))
                 self.fails_in_one_line(done, str(self.folder / name), 'TMPDIR', why)
+
+
+class EarlyOutputs(OtherCase):
+    """An output that cannot be written is found before anything is read: here are no inputs."""
+    READ_FIRST = {'convert'}  # the format of its input says whether it writes a file or a folder
+    ENDINGS = ('csv', 'html', 'json', 'jsonl', 'map', 'ply', 'png', 'segments', 'svg', 'toml', 'txt',
+               'vnl')
+
+    def setUp(self):
+        super().setUp()
+        self.empty = self.folder / 'empty'
+        self.empty.mkdir()
+        self.empty.chmod(0o777)
+        for name in ('folder', *('folder.' + ending for ending in self.ENDINGS)):
+            (self.empty / name).mkdir()
+        (self.empty / 'a_file').write_text('kept')
+        (self.empty / 'locked').mkdir(0o555)
+
+    def test_bad_outputs_are_found_first(self):
+        files = (('folder', 'is a folder'), ('none/out', 'No such file or directory'),
+                 ('locked/out', 'Permission denied'), ('a_file/out', 'Not a directory'))
+        folders = (('a_file', 'is no folder'), ('a_file/out', ''), ('locked', 'Permission denied'),
+                   ('locked/a/b', 'Permission denied'))
+        verbs, before = 0, sorted(self.empty.rglob('*'))
+        for call in verb_calls.calls():
+            if not call.outputs or call.name in self.READ_FIRST:
+                continue
+            verbs += 1
+            for output in call.outputs:
+                for bad, why in files if '.' in output else folders:
+                    if (call.name, bad) == ('study', 'locked'):
+                        continue  # it may hold the results already: then nothing is written
+                    with self.subTest(verb=call.name, output=output, bad=bad):
+                        bad += pathlib.Path(output).suffix
+                        words = [bad if word == output else str(word) for word in call.words]
+                        done = subprocess.run([*self.others, cli_test.PROGRAM, *words],
+                                              cwd=self.empty, capture_output=True, text=True)
+                        self.fails_in_one_line(done, f'vernier: {bad}: ', why)
+                        self.assertEqual(done.stdout, '')
+        self.assertGreater(verbs, 25)
+        self.assertEqual(sorted(self.empty.rglob('*')), before)
 
 
 class Names(FaultCase):

@@ -68,6 +68,38 @@ class SimulatedViews(verb_calls.ProgramCase):
             for line in look['lines']:
                 self.assertGreater(line['a_m'][2], -0.01)  # nothing below the floor
 
+    def test_sources_are_read_from_a_file_as_a_study_does(self):
+        file = self.folder / 'sources.toml'
+        file.write_text('[sources]\nedge_loss = 0.3\nmissed = 0.2\n')
+        one = ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '6,7.5,0', '--json']
+        given = ['--source', 'edge_loss=0.3', '--source', 'missed=0.2']
+        plain = self.done(*one)
+        by_file = self.done(*one, '--sources', 'sources.toml')
+        self.assertEqual(by_file, self.done(*one, *given))
+        self.assertNotEqual(by_file, plain)
+        # single settings come after the file
+        self.assertEqual(self.done(*one, '--sources', 'sources.toml', '--source', 'edge_loss=0.1'),
+                         self.done(*one, '--source', 'edge_loss=0.1', '--source', 'missed=0.2'))
+        self.done(*LOOK, '--sources', 'sources.toml', '--features', 'out.jsonl')
+        self.done(*LOOK, *given, '--features', 'by_words.jsonl')
+        self.assertEqual((self.folder / 'out.jsonl').read_bytes(),
+                         (self.folder / 'by_words.jsonl').read_bytes())
+        (self.folder / 'out.jsonl').unlink()
+        views = [*LOOK, '--sources', 'sources.toml', '--features', 'out.jsonl']
+        self.refused(*views, '--source', 'none', says='would override --sources')
+        self.refused(*LOOK, '--sources', 'sources.toml', '--features', 'sources.toml', says='is an input')
+        self.refused(*LOOK, '--sources', 'none.toml', '--features', 'out.jsonl', says='none.toml: cannot be read')
+        for text, says in (('[sources]\nedge_los = 0.3\n', 'sources.toml:2: '),
+                           ('[sources]\n\nedge_loss = 3\n', 'sources.toml:3: '),
+                           ('[sources]\nfile = "a.toml"\n', 'sources.toml:2: sources.file'),
+                           ('[study]\n', 'sources.toml:1: '), ('', 'sources'), ('[sources', 'sources.toml:1'),
+                           ('[sources]\ncalibration = 1\n', 'which has no pair')):
+            file.write_text(text)
+            with self.subTest(text):
+                self.refused(*views, says=says)
+                if 'calibration' not in text:
+                    self.refused(*one, '--sources', 'sources.toml', says=says)
+
     def test_the_same_again_is_the_same_and_trials_differ(self):
         self.done(*LOOK, '--features', 'out.jsonl', '--segments', 'a.segments')
         before = (self.folder / 'out.jsonl').read_bytes()

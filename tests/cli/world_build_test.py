@@ -88,6 +88,58 @@ class WorldBuild(verb_calls.ProgramCase):
         run = self.run_program('study', 'built.toml', '-o', 'studied', '--threads', '1')
         self.assertIn(run.returncode, (0, 3), run.stderr)
 
+    def test_lines_that_are_upright_as_far_as_is_known_have_a_ceiling(self):
+        rows = [json.loads(line) for line in (self.folder / 'seen.jsonl').read_text().splitlines()]
+        for row in rows:  # lean by a third of a degree, to the side on which the lower end is
+            for segment in row['segments']:
+                low = 'a_m' if segment['a_m'][1] > segment['b_m'][1] else 'b_m'
+                segment[low][0] += 0.01
+        (self.folder / 'seen.jsonl').write_text(''.join(json.dumps(row) + '\n' for row in rows))
+        (self.folder / 'built.toml').write_text(
+            '[study]\ntrials = 60\nprotocol = "near_path"\n[world]\nfile = "b.toml"\n'
+            '[camera]\nheight_m = 1\n[map]\nspacing_m = 0.2\n[sources]\ncalibration = 0\n')
+        for words, uprights in ((['--upright-deg', '0'], 0), ([], 4)):
+            with self.subTest(words):
+                found = json.loads(self.done(*BUILD, '-o', 'b.toml', '--lines', 'lines.csv', *words,
+                                             '--json'))
+                self.assertEqual((found['upright'], found['lines']), (uprights, 4))
+                self.assertEqual([row['upright'] for row in self.lines()], [float(uprights > 0)] * 4)
+                # the table has the line as measured
+                self.assertTrue(all(row['a_x_m'] != row['b_x_m'] or row['a_y_m'] != row['b_y_m']
+                                    for row in self.lines()))
+                run = self.run_program('study', 'built.toml', '-o', f'studied{uprights}', '--json', '-q')
+                self.assertIn(run.returncode, (0, 3), run.stderr)
+                ceiling = json.loads(run.stdout)['cells'][0]['world_ceiling']
+                info = json.loads(self.done('world', 'info', 'b.toml', '--json'))['aliasing']
+                if uprights:
+                    self.assertGreater(ceiling, 0.9)
+                    self.assertGreater(info['ceiling'], 0.9)
+                else:
+                    self.assertEqual((ceiling, info['ceiling']), (0, 0))
+
+    def test_depth_maps_belong_to_images_by_name(self):
+        build = [*BUILD, '--depth', 'far*.png', '--rig', 'K.txt', '-o', 'b.toml', '-q']
+        segments = (self.folder / 'seen.jsonl').read_text().splitlines()
+        (self.folder / 'seen.jsonl').write_text('\n'.join(segments[i] for i in (0, 1, 3, 4)) + '\n')
+        (self.folder / 'far2.png').rename(self.folder / 'left_out.png')
+        self.done(*build)
+        without = (self.folder / 'b.toml').read_bytes()
+        # lines leaves images out; their maps, and any more, may stay
+        (self.folder / 'left_out.png').rename(self.folder / 'far2.png')
+        (self.folder / 'far17.png').write_bytes((self.folder / 'far0.png').read_bytes())
+        self.done(*build)
+        self.assertEqual((self.folder / 'b.toml').read_bytes(), without)
+        # the order of the names is none of the numbers
+        for i in range(5):
+            (self.folder / f'far{i}.png').rename(self.folder / f'far{i + 7}.png')
+        for name in ('seen.jsonl', 'poses.csv'):
+            text = (self.folder / name).read_text()
+            for i in range(5):
+                text = text.replace(f'walk{i}', f'walk{i + 7:02}')
+            (self.folder / name).write_text(text)
+        self.done(*build)
+        self.assertEqual((self.folder / 'b.toml').read_bytes(), without)
+
     def test_views_of_lines_do_without_depth(self):
         found = json.loads(self.done('world', 'build', '--features', 'walk.jsonl', '-o', 'f.toml',
                                      '--lines', 'lines.csv', '--json'))
@@ -145,7 +197,8 @@ class WorldBuild(verb_calls.ProgramCase):
         self.refused(*BUILD, '--depth', 'far*.png', says='without --rig')
         self.refused(*BUILD, '--rig', 'K.txt', says='no effect')
         self.refused(*BUILD, '--recede-m', '0.1', says='no depth maps')
-        self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt', says='matches 2 maps')
+        self.refused(*BUILD, '--depth', 'far[01].png', '--rig', 'K.txt',
+                     says='--depth far[01].png: has no map of "walk2.pgm" and 2 more of the 5 images')
         self.refused(*BUILD, '--up', 'w', says='--up')
         self.refused('world', 'build', '--features', 'walk.jsonl', '--height-m', '2', says='its own')
         twice = (self.folder / 'seen.jsonl').read_text()

@@ -57,6 +57,13 @@ TEST(SegmentsFile, NamesLineAndFault) {
   EXPECT_NE(fault("[-1.0,0.1,3.0]", "[-1.0,0.1]").find(":2"), std::string::npos);
   EXPECT_NE(fault("[-1.0,0.1,3.0]", "[-1.0,0.1,3e4]").find("1,000 m"), std::string::npos);
   EXPECT_NE(fault("[-1.0,0.1,3.0]", "[1.0,0.125,3.5]").find("no length"), std::string::npos);
+  const std::string same = fault("10.25,20.0", "300.0,21.5");
+  EXPECT_NE(same.find(":2: segments[0].image_px: its ends are the same pixel"), std::string::npos)
+      << same;
+  const std::string indefinite = fault("0.0003", "1e-09");  // beside covariances of 1.25e-05
+  EXPECT_NE(indefinite.find(":2: segments[0].covariance_m2: is not positive semidefinite"),
+            std::string::npos)
+      << indefinite;
   EXPECT_NE(fault("0.0003", "-0.0003").find("variance"), std::string::npos);
   EXPECT_NE(fault("[0.0003,1.25e-05", "[0.0003,1.25e-04").find("symmetric"), std::string::npos);
   EXPECT_NE(fault("[0.0003,1.25e-05,", "[0.0003,").find("covariance_m2"), std::string::npos);

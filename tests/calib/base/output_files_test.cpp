@@ -11,6 +11,7 @@
 #include <string>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/file_in_progress.h"
 #include "calib/base/program_run.h"
 #include "tests/support/error_message.h"
 
@@ -98,6 +99,34 @@ TEST_F(OutputFilesTest, NeedAFolderThatIsOne) {
   for (const char* name : {"a", "a/b"}) {
     EXPECT_NE(error_message([&] { outputs.add_folder(path(name)); }), "") << name;
   }
+}
+
+TEST_F(OutputFilesTest, AreCheckedBeforeTheyAreWritten) {
+  write_atomically(path("a"), "old");
+  const std::size_t before = entries();
+  // a check of names says what writing them would say, and makes nothing
+  for (const char* name : {"a", "new", "none/new", "a/new", "."}) {
+    const auto write = [&] {
+      const FileInProgress file(path(name));
+      return 0;
+    };
+    EXPECT_EQ(error_message([&] { check_writable_file(path(name)); }), error_message(write))
+        << name;
+  }
+  EXPECT_NE(error_message([&] {
+              check_writable_file(path(std::string(300, 'a')));
+            }).find("choose a shorter name"),
+            std::string::npos);
+  for (const char* name : {"a", "a/b", "new", "new/folder/", "."}) {
+    const auto make = [&] {
+      OutputFiles outputs;
+      outputs.add_folder(path(name));
+    };
+    EXPECT_EQ(error_message([&] { check_writable_folder(path(name)); }) == "",
+              error_message(make) == "")
+        << name;
+  }
+  EXPECT_EQ(entries(), before);
 }
 
 TEST_F(OutputFilesTest, MayBeMoreThanTheDescriptorsOfAProcess) {

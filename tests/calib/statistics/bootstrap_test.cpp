@@ -92,6 +92,31 @@ TEST(ClusterInterval, WidensByTheQuantilesOfItsConfidence) {
   }
 }
 
+TEST(ClusterInterval, OfValuesTogetherIsThatOfEachAlone) {
+  const std::vector<double> a{1, 4, 2, 8, 5}, b{0, 0, 3, 1, std::nan("")};
+  int calls = 0;
+  const ClusterStatistics both = [&](std::span<const std::size_t> drawn) {
+    ++calls;
+    return std::vector<double>{mean_of(a)(drawn), mean_of(b)(drawn)};
+  };
+  const BootstrapOptions options{.resamples = 99, .seed = 5};
+  for (const int clusters : {0, 1, 2, 4, 5}) {
+    calls = 0;
+    const std::vector<Interval> together = cluster_intervals(clusters, 2, both, options);
+    EXPECT_EQ(calls, clusters < 3 ? 0 : 100) << clusters;
+    ASSERT_EQ(together.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Interval alone = cluster_interval(clusters, mean_of(i == 0 ? a : b), options);
+      if (std::isnan(alone.low)) {
+        EXPECT_TRUE(std::isnan(together[i].low) && std::isnan(together[i].high)) << clusters;
+      } else {
+        EXPECT_EQ(together[i].low, alone.low) << clusters;
+        EXPECT_EQ(together[i].high, alone.high) << clusters;
+      }
+    }
+  }
+}
+
 TEST(Bootstrap, RefusesOptionsOutOfBounds) {
   EXPECT_NE(test::error_message([] {
               bootstrap_interval(3, [](auto) { return 0.0; }, {.confidence = 1});

@@ -102,6 +102,8 @@ localise::JoinedLine line(const Vector3d& a, const Vector3d& b, int views) {
   made.a_m = a;
   made.b_m = b;
   made.views = views;
+  made.covariance_m2.setIdentity();
+  made.covariance_m2 *= 1e-4;
   return made;
 }
 
@@ -210,6 +212,31 @@ TEST(BuiltWorld, NothingStandsWhereTheCameraWas) {
   const BuiltWorld built = built_world({}, {post, overhead, beside}, way);
   EXPECT_EQ(built.report.on_the_way, 1U);
   EXPECT_EQ(built.report.surfaces, 2U);
+}
+
+TEST(BuiltWorld, NothingStandsBetweenTwoPlacesOfTheCamera) {
+  // 2 m apart, and then a jump of 4 m, over which nobody is known to have walked
+  const std::vector<Pose> way{camera_at(0, 0.5, 0), camera_at(2, 0.5, 0), camera_at(6, 0.5, 0)};
+  const auto post = [](double x, double low_y, double high_y, double width) {
+    Patch patch;
+    patch.polygon_m = {
+        {x, low_y, 0.5}, {x + width, high_y, 0.5}, {x + width, high_y, 1}, {x, low_y, 1}};
+    patch.normal = -Vector3d::UnitX();
+    return patch;
+  };
+  const auto left_out = [&](const Patch& patch) {
+    return built_world({}, {patch}, way, {.recede_m = 0}).report.on_the_way == 1;
+  };
+  EXPECT_TRUE(left_out(post(1, 0.45, 0.55, 0)));     // across, narrow
+  EXPECT_TRUE(left_out(post(1, -2, 3, 0.1)));        // across, both ends far from it
+  EXPECT_TRUE(left_out(post(0.5, 0.65, 0.65, 1)));   // beside, 0.15 m
+  EXPECT_FALSE(left_out(post(0.5, 0.75, 0.75, 1)));  // 0.25 m
+  EXPECT_FALSE(left_out(post(1, 0.71, 3, 0)));
+  EXPECT_FALSE(left_out(post(4, 0.3, 0.7, 0)));  // in the jump
+  Patch table;                                   // over the way, its edges far
+  table.polygon_m = {{-1, -1, 0.7}, {3, -1, 0.7}, {3, 2, 0.7}, {-1, 2, 0.7}};
+  table.normal = Vector3d::UnitZ();
+  EXPECT_TRUE(left_out(table));
 }
 
 TEST(BuiltWorld, FindsTheFloor) {

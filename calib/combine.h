@@ -44,15 +44,14 @@ struct Combination {
 
 /// One calibration from several inputs. All evidence is solved as one problem (calibrate_jointly):
 /// raw pairs and corners are linearised again at the common minimum, so the order of the inputs
-/// does not matter and the result is the batch solution. A rig file without evidence is a prior,
-/// and so is one of a calibration with random effects, which the joint cost has not; one with
-/// evidence contributes that, its own priors included (a prior contained in several files counts
-/// once, and one that is the calibration of another input not at all). Every input is compared with
-/// all previous ones before it is used: pairs by the prior's offset
-/// (calib/estimate/prior_consistency.h), calibrations by their difference (rig_difference.h). An
-/// inconsistent one, as after a mechanical shock, is excluded and reported. Throws Error if the
-/// first inputs do not determine the rig, or inputs differ from the first in cameras or lens
-/// models.
+/// does not matter and the result is the batch solution, without random effects, which the joint
+/// cost has not. A rig file without evidence is a prior; one with evidence contributes that, its
+/// own priors included (a prior contained in several files counts once, and one that is the
+/// calibration of another input not at all). Every input is compared with all previous ones before
+/// it is used: pairs by the prior's offset (calib/estimate/prior_consistency.h), calibrations by
+/// their difference (rig_difference.h). An inconsistent one, as after a mechanical shock, is
+/// excluded and reported. Throws Error if the first inputs do not determine the rig, or inputs
+/// differ from the first in cameras or lens models.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
 
 }  // namespace vernier

@@ -261,6 +261,12 @@ std::string residual_warning(const Solution& s, double rms_px, bool look_for_cau
   return words;
 }
 
+double chi2_of_priors(const Solution& s) {
+  double sum = 0;
+  for (const RigPrior& prior : s.problem.priors) sum += prior_chi2(prior, s.state.rig);
+  return sum;
+}
+
 CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& options) {
   CalibrationSummary summary;
   summary.views = static_cast<int>(s.state.frames.size());
@@ -281,9 +287,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
     summary.trust_warnings.push_back(residual_warning(s, summary.rms_px, options.check_input));
   }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
-  for (const RigPrior& prior : s.problem.priors) {
-    summary.prior_chi2 += prior_chi2(prior, s.state.rig);
-  }
+  summary.prior_chi2 = chi2_of_priors(s);
   const auto known =
       options.known.size() + (options.prior ? options.prior->covariance.names.size() : 0);
   summary.prior_dof = static_cast<int>(known);
@@ -368,6 +372,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   if (has_effects(options)) {
     move_to_effects(options, s.observations, s.problem, s.state, s.cost, summary);
     s.bound = minimum_variance_bound(s.cost.equations, s.cost.names);
+    summary.prior_chi2 = chi2_of_priors(s);
   }
   RigEstimate estimate;
   estimate.rig = s.state.rig;

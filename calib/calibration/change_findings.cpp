@@ -107,10 +107,10 @@ std::optional<ResidualFinding> bent_board_finding(const BoardObservations& obser
     return ResidualFinding{
         std::min(1.0, share),
         fmt::format(
-            "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y explains "
+            "{}a warp of {:.2g} mm in x and {:.2g} mm in y explains "
             "{:.0f} % of the squared residuals; use a stiff board, or estimate its shape with "
             "--board-shape",
-            1e3 * warp_m.x(), 1e3 * warp_m.y(), 100 * std::min(1.0, share))};
+            bent_board_doubt, 1e3 * warp_m.x(), 1e3 * warp_m.y(), 100 * std::min(1.0, share))};
   } catch (const Error&) {
     return {};
   }

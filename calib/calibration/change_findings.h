@@ -20,6 +20,9 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
                                               const BoardState& state,
                                               bool motion_is_estimated = false);
 
+/// How the text of the following begins.
+inline constexpr const char* bent_board_doubt = "the board is not flat: ";
+
 /// The doubt that the board is bent: a warp (calib/board/board_warp.h), by a score test, explains
 /// half of Σ r². `state` is a minimum with a known warp, without prior or held parameters.
 std::optional<ResidualFinding> bent_board_finding(const BoardObservations& observations,

@@ -41,7 +41,6 @@ bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
 }  // namespace
 
 bool has_boards(const RigEstimate& estimate) {
-  if (estimate.calibration && estimate.calibration->effects) return false;
   return estimate.evidence && !estimate.evidence->observations.views.empty();
 }
 bool has_pairs(const RigEstimate& estimate) {

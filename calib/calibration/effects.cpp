@@ -13,6 +13,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/change_findings.h"
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
@@ -29,6 +30,9 @@ constexpr double level = 0.01;  // of the tests
 constexpr int fewest_views_of_effects = 8;
 constexpr std::size_t most_points_of_effects = 150;
 constexpr double least_residual_px = 1e-3;
+constexpr const char* no_minimum =
+    "no minimum with the board's shape and motion was found; calibrate without --board-shape and "
+    "--motion";
 
 /// The components and the shape of a minimum, warp and the rest of it together.
 CalibrationEffects effects_of(const EffectsMinimum& minimum,
@@ -56,7 +60,7 @@ void check_effects(const CalibrationOptions& options, std::size_t cameras) {
   if (!has_effects(options)) return;
   if (options.warp == BoardWarp::free) {
     throw Error("--warp", "is not estimated beside --board-shape or --motion",
-                "give --board-shape alone, which contains it");
+                "leave it out; --board-shape contains it");
   }
   if (options.pixel_sigma_px > 0) {
     throw Error("--pixel-sigma",
@@ -82,9 +86,7 @@ void move_to_effects(const CalibrationOptions& options,
   cost.equations = minimum.equations;
   summary.effects = effects_of(minimum, observations.target_m);
   if (minimum.converged) return;
-  summary.trust_warnings.emplace_back(
-      "no minimum with the board's shape and motion was found; calibrate without --board-shape "
-      "and --motion");
+  summary.trust_warnings.emplace_back(no_minimum);
 }
 
 namespace {
@@ -97,7 +99,9 @@ std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOption
   if (summary.views < fewest_views_of_effects) {
     return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_effects);
   }
-  if (!summary.trust_warnings.empty()) return "the calibration is doubtful";
+  for (const std::string& doubt : summary.trust_warnings) {
+    if (!doubt.starts_with(bent_board_doubt)) return "the calibration is doubtful";
+  }
   if (summary.rms_px < least_residual_px) return "the corners are exact";
   const std::size_t points = usual.evidence->observations.target_m.size();
   if (points > most_points_of_effects) {
@@ -147,8 +151,10 @@ RigEstimate with_found_effects(RigEstimate usual,
     options.motion = test.has_motion();
     if (!has_effects(options)) return usual;
     RigEstimate estimate = calibrate(observations, options);
-    if (estimate.calibration->trust_warnings.empty()) return estimate;
-    return keep_usual(estimate.calibration->trust_warnings.front());
+    for (const std::string& doubt : estimate.calibration->trust_warnings) {
+      if (doubt == no_minimum) return keep_usual("they lead to no minimum");
+    }
+    return estimate;
   } catch (const Error& error) {
     return keep_usual(error.what());
   }

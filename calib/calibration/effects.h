@@ -46,12 +46,13 @@ struct EffectsTest {
 };
 
 /// The test of a calibration without effects. Not of fewer than 8 views, of boards of more than 150
-/// points (it takes long), of doubtful calibrations, nor where the options leave effects no place.
+/// points (it takes long), of doubtful calibrations (but for a bent board), nor where the options
+/// leave effects no place.
 EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options);
 
 /// `usual`, a calibration of the observations without effects, with those that the test finds,
 /// which are then set in the options, as the test is. `usual` itself, with a warning, where they
-/// lead to no trustworthy minimum.
+/// lead to no minimum.
 RigEstimate with_found_effects(RigEstimate usual,
                                const BoardObservations& observations,
                                CalibrationOptions& options,

@@ -47,6 +47,7 @@ CalibrationOptions options_to_solve_again(const RigEstimate& estimate) {
   }
   options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
   if (summary.effects) {
+    options.pixel_sigma_px = 0;       // with a prior the degrees of freedom are rounded
     options.warp = BoardWarp::known;  // a shape contains it
     options.board_shape = !summary.effects->shape_m.empty();
     options.motion = summary.effects->motion_m > 0;

@@ -117,7 +117,14 @@ CalibrationEffects parse_effects(const Node& node) {
   for (const auto& [key, member] : effect_keys)
     effects.*member = not_negative(node.at(key), most_value);
   if (!(effects.white_px > 0)) throw Error(node.at("white_px").place(), "is not above 0", remedy);
-  if (!node.has("shape_m")) return effects;
+  const bool has_shape = effects.shape_plane_m > 0 || effects.shape_height_m > 0;
+  if (has_shape != node.has("shape_m")) {
+    throw Error(node.place(), has_shape ? "has no shape_m" : "has a shape_m of no height", remedy);
+  }
+  if (!has_shape && !(effects.motion_m > 0)) {
+    throw Error(node.place(), "has neither shape nor motion", remedy);
+  }
+  if (!has_shape) return effects;
   const Node shape = node.at("shape_m");
   const Eigen::VectorXd values = shape.vector();
   if (values.size() % 3 != 0) throw Error(shape.place(), "is not x, y, z of each point", remedy);

@@ -95,6 +95,16 @@ std::string effects_text(const CalibrationEffects& effects, const EffectsTest& t
   return text;
 }
 
+std::string no_effects_text(const EffectsTest& test) {
+  if (!test.not_tested.empty()) {
+    return "random effects of the board: not looked for: " + test.not_tested + "\n";
+  }
+  std::string text = "random effects of the board: none in use";
+  if (test.shape) text += ", shape " + p_text(*test.shape);
+  if (test.motion) text += ", motion " + p_text(*test.motion);
+  return text + "\n";
+}
+
 /// Null for what was not tested.
 Json effects_test_json(const EffectsTest& test) {
   Json json{{"shape", test_json(test.shape)}, {"motion", test_json(test.motion)}};
@@ -134,7 +144,11 @@ void run(const CalibrateArguments& options, Session& session) {
   report_warnings(estimate, session);
   Json json = rig_json(estimate);
   std::string text = rig_table(estimate);
-  if (estimate.calibration->effects) text += effects_text(*estimate.calibration->effects, test);
+  if (estimate.calibration->effects) {
+    text += effects_text(*estimate.calibration->effects, test);
+  } else if (options.solver.looks_for_effects()) {
+    text += no_effects_text(test);
+  }
   if (options.solver.looks_for_effects()) json["effects_test"] = effects_test_json(test);
   if (!comparison.richer.empty()) {
     json["model_comparison"] = comparison_json(comparison);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,29 @@ ToleranceCheck covariance_gate_of(const RigEstimate& from_file, const RigEstimat
           names[worst.row] + ", " + names[worst.column], worst.largest, gate};
 }
 
+/// The components and the shape of random effects, relative to the largest there is of each unit.
+ToleranceCheck effects_gate(const CalibrationEffects& from_file, const CalibrationEffects& again) {
+  ToleranceCheck worst{"random effects, relative", "max_effects_diff", "", 0, gate};
+  const auto compare = [&](const std::string& name, double a, double b, double unit) {
+    const double relative = a == b ? 0 : std::abs(a - b) / unit;
+    if (!is_worse(relative, worst.value)) return;
+    worst.value = relative;
+    worst.where = name;
+  };
+  compare("white_px", from_file.white_px, again.white_px, again.white_px);
+  compare("field_px", from_file.field_px, again.field_px, again.white_px);
+  compare("field_length_m", from_file.field_length_m, again.field_length_m, again.field_length_m);
+  compare("motion_m", from_file.motion_m, again.motion_m, again.motion_m);
+  compare("motion_rad", from_file.motion_rad, again.motion_rad, again.motion_rad);
+  const double height_m = std::hypot(again.shape_height_m, again.shape_plane_m);
+  compare("shape_height_m", from_file.shape_height_m, again.shape_height_m, height_m);
+  compare("shape_plane_m", from_file.shape_plane_m, again.shape_plane_m, height_m);
+  for (std::size_t i = 0; i < again.shape_m.size(); ++i) {
+    compare("shape_m", (from_file.shape_m[i] - again.shape_m[i]).norm(), 0, height_m);
+  }
+  return worst;
+}
+
 }  // namespace
 
 CheckSection check_file(const RigEstimate& from_file, const RigEstimate& again) {
@@ -64,6 +88,10 @@ CheckSection check_file(const RigEstimate& from_file, const RigEstimate& again) 
   }
   std::vector<ToleranceCheck> gates{parameter_gate(from_file.rig, again)};
   if (from_file.covariance_mvb) gates.push_back(covariance_gate_of(from_file, again));
+  const std::optional<CalibrationEffects>& effects = from_file.calibration->effects;
+  if (effects && again.calibration->effects) {
+    gates.push_back(effects_gate(*effects, *again.calibration->effects));
+  }
   add_gates("file against solving again", "solving again", gates, part);
   if (!from_file.covariance_mvb) part.text += "  the file has no covariance_mvb to compare\n";
   return part;

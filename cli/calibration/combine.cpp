@@ -58,10 +58,11 @@ std::vector<CombineInput> load(const CombineArguments& options, Session& session
         session.warn(warning);
     }
     input.estimate = std::move(file.estimate);
-    if (input.estimate->calibration && input.estimate->calibration->effects) {
+    const RigEstimate& estimate = *input.estimate;
+    if (estimate.calibration && estimate.calibration->effects && estimate.evidence) {
       session.warn(name +
-                   ": was calibrated with the board's shape or motion; it counts with its "
-                   "covariance, and its corners are not solved again (calibrate --no-effects)");
+                   ": was calibrated with the board's shape or motion; its corners are "
+                   "combined without");
     }
   }
   return inputs;

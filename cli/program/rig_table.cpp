@@ -119,6 +119,16 @@ std::string rig_table(const RigEstimate& estimate) {
   return text;
 }
 
+Json effects_json(const CalibrationEffects& effects) {
+  return {{"white_px", effects.white_px},
+          {"field_px", effects.field_px},
+          {"field_length_m", effects.field_length_m},
+          {"motion_m", effects.motion_m},
+          {"motion_rad", effects.motion_rad},
+          {"shape_height_m", effects.shape_height_m},
+          {"shape_plane_m", effects.shape_plane_m}};
+}
+
 Json rig_json(const RigEstimate& estimate) {
   const auto list = [](const Eigen::VectorXd& v) {
     return std::vector<double>(v.begin(), v.end());
@@ -135,6 +145,7 @@ Json rig_json(const RigEstimate& estimate) {
     json["warnings"] = s.warnings;
     json["held"] = s.held;
     json["source"] = s.source;
+    if (s.effects) json["effects"] = effects_json(*s.effects);
     json["pair_outliers"] = Json::array();
     for (const PairOutlier& o : s.pair_outliers) {
       json["pair_outliers"].push_back(

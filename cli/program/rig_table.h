@@ -16,6 +16,9 @@ namespace vernier::cli {
 std::string rig_table(const RigEstimate& estimate);
 Json rig_json(const RigEstimate& estimate);
 
+/// The components of the random effects, 0 where not estimated.
+Json effects_json(const CalibrationEffects& effects);
+
 /// Describes the first principal directions, one per line, with their fraction of the scaled
 /// variance.
 std::string direction_lines(const ScaledDecomposition& decomposition, std::size_t most = 5);

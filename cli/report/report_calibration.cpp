@@ -52,14 +52,6 @@ void add_correlation(const Covariance& covariance, Json& json) {
   }
 }
 
-Json effects_json(const CalibrationEffects& effects) {
-  return {{"white_px", effects.white_px},
-          {"motion_m", effects.motion_m},
-          {"motion_rad", effects.motion_rad},
-          {"shape_height_m", effects.shape_m.empty() ? 0 : effects.shape_height_m},
-          {"shape_plane_m", effects.shape_m.empty() ? 0 : effects.shape_plane_m}};
-}
-
 Json summary_json(const RigEstimate& estimate) {
   const CalibrationSummary& s = *estimate.calibration;
   Json json{{"source", s.source},

@@ -11,6 +11,7 @@
 #include "calib/base/error_place.h"
 #include "calib/board/board_placement.h"
 #include "calib/board_target.h"
+#include "calib/calibration/solve_again.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -171,7 +172,13 @@ std::string basis_text(const Basis& basis) {
 void run(const AdviseArguments& options, Session& session) {
   const RigFile file = read_rig(find_rig(options.rig));
   for (const std::string& warning : file.warnings) session.warn(warning);
-  const RigEstimate& rig = file.estimate;
+  const RigEstimate rig = without_effects(file.estimate);
+  const bool had_effects = file.estimate.calibration && file.estimate.calibration->effects;
+  if (had_effects && !rig.calibration->effects) {
+    session.warn(options.rig +
+                 ": advice is for the calibration without the board's shape and motion, "
+                 "from the same corners");
+  }
   const TargetQuantity wanted = with_errors_of(
       options.rig, [&] { return target_quantity(rig.rig, options.reduce, options.at_m); });
   const Basis basis = with_errors_of(options.rig, [&] { return find_basis(options, rig, wanted); });

@@ -142,8 +142,10 @@ class RealPairs(Case):
         self.assertTrue(all(gate['ok'] for gate in json.loads(checked.stdout)['file'].values()
                             if isinstance(gate, dict) and 'ok' in gate))
         combined = self.works('combine', self.folder / 'rig.json', '-o', self.folder / 'prior.json')
-        self.assertIn('no corners and no pairs, priors alone\n', combined.stdout)
-        self.assertIn('it counts with its covariance', combined.stderr)
+        self.assertIn('its corners are combined without', combined.stderr)
+        self.assertIn('13 views', combined.stdout)
+        advised = self.works('advise', self.folder / 'rig.json', '--reduce', 'depth', '--at-m', '5')
+        self.assertIn("without the board's shape and motion", advised.stderr)
         self.assertIn("(without the board's shape and motion)", self.works(
             'plan', self.folder / 'rig.json', '--depth-error', '0.01@2').stdout)
         forced = json.loads(self.calibrate('--no-model-check', '--board-shape', '--motion').stdout)
@@ -160,7 +162,7 @@ class RealPairs(Case):
                        IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
                        '-o', self.folder / 'no.json', '--no-effects', '--motion', of='--motion')
         for option, of in ((('--warp',), '--warp: is not estimated beside --board-shape or '
-                            '--motion; give --board-shape alone, which contains it'),
+                            '--motion; leave it out; --board-shape contains it'),
                            (('--pixel-sigma', '0.2'), '--pixel-sigma: is one of the components '
                             'that --board-shape and --motion estimate; leave it out')):
             self.complains('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -137,6 +138,8 @@ TEST(Effects, OfARigFileMustFitItsBoard) {
             "again");
   EXPECT_EQ(fault([](CalibrationEffects& e) { e.white_px = 0; }),
             "rig.json: calibration.effects.white_px: is not above 0; calibrate again");
+  EXPECT_EQ(fault([](CalibrationEffects& e) { e.shape_m.clear(); }),
+            "rig.json: calibration.effects: has no shape_m; calibrate again");
 }
 
 // What is estimated is no doubt: a board that moves far, and one that is bent.
@@ -158,12 +161,48 @@ TEST(Effects, ThatAreEstimatedAreNotDoubted) {
   EXPECT_EQ(with_shape.calibration->trust_warnings, std::vector<std::string>{});
 }
 
-// The joint cost has no effects, so that such a calibration counts as the prior that it is.
-TEST(Effects, MakeACalibrationAPriorOfACombination) {
+// The joint cost has no effects: it has the corners of such a calibration, so that views that two
+// inputs share are found.
+TEST(Effects, DoNotKeepCornersOutOfACombination) {
   const JointEvidence evidence = evidence_of({"rig.json", with_effects(), {}});
-  EXPECT_TRUE(evidence.boards.empty());
-  ASSERT_EQ(evidence.priors.size(), 1u);
-  EXPECT_EQ(evidence.priors[0].covariance.matrix, with_effects().covariance->matrix);
+  EXPECT_TRUE(evidence.priors.empty());
+  ASSERT_EQ(evidence.boards.size(), 1u);
+  EXPECT_EQ(evidence.boards[0].evidence.observations.views.size(),
+            with_effects().evidence->observations.views.size());
+}
+
+// Beside a prior the degrees of freedom are no whole number, and the noise is estimated all the
+// same; the prior's part of the cost is that of the rig with effects.
+TEST(Effects, AreSolvedAgainBesideAPrior) {
+  CalibrationOptions how{.check_input = false, .board_shape = true};
+  how.known = {{"left.f_px", 521, 0.5}};
+  const RigEstimate with = calibrate(corners(hand_held), how);
+  const RigEstimate again = calibrate(with.evidence->observations, options_to_solve_again(with));
+  const Eigen::VectorXd sd = with.covariance_mvb->diagonal().cwiseSqrt();
+  EXPECT_LT(difference(again.rig, with.rig).cwiseQuotient(sd).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_NEAR(with.calibration->prior_chi2, std::pow((parameters(with.rig)[0] - 521) / 0.5, 2),
+              1e-9);
+}
+
+// A bent board is doubted, and no longer where the test finds its shape; a prior that the corners
+// contradict is doubted with effects as without.
+TEST(Effects, ResolveTheDoubtOfABentBoardAndNoOther) {
+  const BoardObservations bent = test::bent(
+      simulate_board(test::stereo_rig(), {}, {.seed = 8104, .frames = 12, .pixel_sigma_px = 0.1}),
+      {2e-3, 2e-3});
+  CalibrationOptions options;
+  EffectsTest test;
+  const RigEstimate found = found_in(bent, options, test);
+  EXPECT_TRUE(options.board_shape);
+  EXPECT_EQ(found.calibration->trust_warnings, std::vector<std::string>{});
+  CalibrationOptions wrong;
+  wrong.known = {{"left.f_px", 535, 0.5}};
+  const BoardObservations held =
+      test::noisy_board(test::stereo_rig(), {}, {.seed = 8105, .frames = 14}, hand_held)
+          .board.observations;
+  const RigEstimate contradicted = found_in(held, wrong, test);
+  EXPECT_TRUE(contradicted.calibration->effects);
+  EXPECT_FALSE(contradicted.calibration->trust_warnings.empty());
 }
 
 /// The covariance of rig and pose of one frame by the inverse of the whole normal matrix of rig,

@@ -58,6 +58,9 @@ JointEvidence evidence_of(const CombineInput& input) {
     CalibrationEvidence boards = *estimate.evidence;
     boards.pairs = {};
     boards.priors.clear();
+    if (estimate.calibration && estimate.calibration->effects) {
+      boards.warp_m.setZero();  // it was estimated as a part of the shape
+    }
     const double sigma = estimate.calibration ? estimate.calibration->pixel_sigma_px : 1;
     evidence.boards.push_back({std::move(boards), sigma});
   }

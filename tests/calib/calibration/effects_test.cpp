@@ -167,6 +167,7 @@ TEST(Effects, DoNotKeepCornersOutOfACombination) {
   const JointEvidence evidence = evidence_of({"rig.json", with_effects(), {}});
   EXPECT_TRUE(evidence.priors.empty());
   ASSERT_EQ(evidence.boards.size(), 1u);
+  EXPECT_TRUE(evidence.boards[0].evidence.warp_m.isZero(0));
   EXPECT_EQ(evidence.boards[0].evidence.observations.views.size(),
             with_effects().evidence->observations.views.size());
 }

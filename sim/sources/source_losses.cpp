@@ -19,7 +19,7 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double displaced_px = 2, shortest_m = 1e-6;
+constexpr double displaced_at_px = 2, shortest_m = 1e-6;
 
 /// A part of an edge, by the shares of its length at which it begins and ends.
 using Part = std::pair<double, double>;
@@ -66,7 +66,7 @@ bool is_displaced(const SensedEdge& before, const SensedEdge& after) {
   for (std::size_t eye = 0; eye < 2; ++eye) {
     for (std::size_t end = 0; end < 2; ++end) {
       const double moved = (after.offset_px[eye][end] - before.offset_px[eye][end]).norm();
-      if (moved >= displaced_px) return true;
+      if (moved >= displaced_at_px) return true;
     }
   }
   return false;

@@ -100,7 +100,7 @@ Basis find_basis(const AdviseArguments& options,
   return basis;
 }
 
-double degrees(double rad) { return rad * 180 / std::numbers::pi; }
+double in_degrees(double rad) { return rad * 180 / std::numbers::pi; }
 
 Json view_json(const ScoredView& view, const Rig& rig, double scale) {
   const BoardPlacement& p = view.placement;
@@ -110,8 +110,8 @@ Json view_json(const ScoredView& view, const Rig& rig, double scale) {
           {"translation_m", {t.x(), t.y(), t.z()}},
           {"centre_px", {p.centre_px.x(), p.centre_px.y()}},
           {"distance_m", p.distance_m},
-          {"turn_deg", degrees(p.turn_rad)},
-          {"tilt_deg", degrees(p.tilt_rad)},
+          {"turn_deg", in_degrees(p.turn_rad)},
+          {"tilt_deg", in_degrees(p.tilt_rad)},
           {"sd_before", scale * view.sd_before},
           {"sd_after", scale * view.sd_after},
           {"reduction", 1 - view.sd_after / view.sd_before}};
@@ -125,7 +125,7 @@ std::string table_line(const ScoredView& view, double scale, const std::string& 
   const BoardPlacement& p = view.placement;
   return fmt::format(
       "  {:>8.2f} m {:>7.0f} {:>5.0f} px {:>6.0f}° {:>6.0f}° {:>10.3g} {:<3} {:>8}\n", p.distance_m,
-      p.centre_px.x(), p.centre_px.y(), degrees(p.turn_rad), degrees(p.tilt_rad),
+      p.centre_px.x(), p.centre_px.y(), in_degrees(p.turn_rad), in_degrees(p.tilt_rad),
       scale * view.sd_after, unit, percent_reduction(view));
 }
 

@@ -7,7 +7,7 @@
 
 Fails if two sources of a module define the same name in unnamed namespaces within one namespace:
 which of them meet in a unit changes with every source that is added. Functions may be overloaded, but
-not by anything else. With files, these are taken for the sources of one module.
+not by anything else. A constant of a header, which any of them may include, counts like one of a source. With files, these are taken for the sources of one module.
 """
 import collections
 import re
@@ -69,11 +69,25 @@ def local_names(text):
                 yield space, f"{found[1]}({parameters([found[2]] + lines[number + 1:])})"
 
 
+def header_constants(text):
+    """(namespace, name) of the constants that a header defines for all, at the start of a line."""
+    space = ""
+    for line in text.split("\n"):
+        if named := NAMESPACE.match(line):
+            space = named[1]
+        if line.startswith(("inline constexpr ", "constexpr ", "inline const ")):
+            if found := CONSTANT.match(line.removeprefix("inline ")):
+                yield space, found[1]
+
+
 def twice(files):
     """Names that more than one of the files defines: (name, the files)."""
     where, functions = collections.defaultdict(set), collections.defaultdict(set)
     aliases = collections.defaultdict(lambda: collections.defaultdict(set))
-    for file in files:
+    for file in (file for file in files if file.suffix == ".h"):
+        for space, name in header_constants(file.read_text(encoding="utf-8")):
+            where[f"{space}::{name}"].add(str(file))
+    for file in (file for file in files if file.suffix == ".cpp"):
         for space, name in local_names(file.read_text(encoding="utf-8")):
             if " = " in name:  # an alias may be given twice, if it is the same
                 aliases[f"{space}::{name.split(' = ')[0]}"][name].add(str(file))
@@ -92,7 +106,8 @@ def twice(files):
 
 def main():
     modules = [[Path(name) for name in sys.argv[1:]]] if len(sys.argv) > 1 else [
-        [file for file in (ROOT / module).rglob("*.cpp") if "node_modules" not in file.parts]
+        [file for ext in ("cpp", "h") for file in (ROOT / module).rglob(f"*.{ext}")
+         if "node_modules" not in file.parts]
         for module in MODULES]
     faults = [fault for files in modules for fault in twice(files)]
     for name, files in faults:

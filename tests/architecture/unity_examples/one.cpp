@@ -9,6 +9,7 @@ using Bins = int;
 constexpr double first_m = 1, second_m = 2;
 int table[3] = {1, 2, 3};
 auto chosen = 5;
+constexpr double of_header = 2;
 constexpr std::array<std::pair<int, int>, 1> beside{{{1, 0}}};
 struct Part {};
 int overloaded(int x) { return x; }

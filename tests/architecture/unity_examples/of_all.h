@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// A name that unity_test.py must find twice; never compiled.
+namespace vernier {
+
+inline constexpr double of_header[] = {1, 2};
+
+}  // namespace vernier

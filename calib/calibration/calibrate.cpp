@@ -23,6 +23,7 @@
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/residual_diagnosis.h"
 #include "calib/calibration/result_checks.h"
+#include "calib/calibration/richer_lens_outliers.h"
 #include "calib/calibration/small_sample_covariance.h"
 #include "calib/calibration/view_checks.h"
 #include "calib/camera.h"
@@ -48,7 +49,6 @@ using namespace internal;
 namespace {
 
 constexpr double largest_corner_noise_px = 1;  // larger residuals indicate a fault
-constexpr double rounding_px = 1e-3;           // smaller ones are not noise (exact corners)
 constexpr int few_frames = 8;                  // fewer give an uncertain scatter
 
 /// A minimum of the cost and related quantities.
@@ -96,69 +96,6 @@ double estimated_sigma(const Solution& s) {
   return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / dof);
 }
 
-/// The rig with opencv5 in place of simpler models; std::nullopt if there is none to replace.
-std::optional<Rig> with_richer_lenses(const Rig& rig) {
-  std::vector<CameraModel> rich = models_of(rig);
-  bool richer = false;
-  for (CameraModel& model : rich) {
-    if (richer_models(model).size() < 2) continue;  // opencv5, opencv8, fisheye4 stay
-    model = OpenCv5{};
-    richer = true;
-  }
-  if (!richer) return {};
-  return in_models(rig, rich);
-}
-
-/// Views of one frame.
-std::vector<BoardView> views_in_frame(const BoardObservations& observations, int frame) {
-  std::vector<BoardView> views;
-  std::copy_if(observations.views.begin(), observations.views.end(), std::back_inserter(views),
-               [&](const BoardView& view) { return view.frame == frame; });
-  return views;
-}
-
-/// Copies the board poses of `other` at the frames that both have.
-void replace_poses(BoardState& state, const BoardState& other) {
-  for (std::size_t f = 0; f < state.frames.size(); ++f) {
-    const auto at = std::lower_bound(other.frames.begin(), other.frames.end(), state.frames[f]);
-    if (at == other.frames.end() || *at != state.frames[f]) continue;
-    state.T_first_board[f] = other.T_first_board[at - other.frames.begin()];
-  }
-}
-
-/// The outliers under a sufficiently rich lens model, fitted to the corners that `fit` kept, and
-/// its board poses; frames excluded as a whole first get a pose from `robust`. std::nullopt if
-/// there is no such model or the views do not determine it.
-std::optional<RobustFit> outliers_by_richer_lenses(const Solution& s,
-                                                   const BoardState& robust,
-                                                   const RobustFit& fit,
-                                                   const CalibrationOptions& options) {
-  const std::optional<Rig> rig = with_richer_lenses(robust.rig);
-  if (!rig) return {};
-  BoardState whole = robust;
-  try {
-    ReprojectionProblem problem = problem_of(options, *rig);
-    problem.must_converge = false;
-    BoardState inside = fit.state;
-    inside.rig = *rig;
-    inside = minimise_reprojection(fit.inliers, inside, problem);
-    whole.rig = inside.rig;
-    whole.warp_m = inside.warp_m;
-    replace_poses(whole, inside);
-  } catch (const Error&) {
-    return {};
-  }
-  const auto target_m = warped_target(s.observations.target_m, whole.warp_m);
-  for (std::size_t f = 0; f < whole.frames.size(); ++f) {
-    const int frame = whole.frames[f];
-    if (std::binary_search(fit.state.frames.begin(), fit.state.frames.end(), frame)) continue;
-    const std::vector<BoardView> views = views_in_frame(s.observations, frame);
-    whole.T_first_board[f] =
-        fit_board_pose(target_m, views, whole.rig, whole.T_first_board[f], 50).T_first_board;
-  }
-  return outliers_at(s.observations, whole);
-}
-
 /// Excludes outliers. Corners are assessed with a rich lens model, so that the misfit of a simple
 /// model is not mistaken for wrong corners. Least squares then starts at the robust minimum of the
 /// requested model, since without outliers plain least squares may reach another local minimum.
@@ -167,7 +104,8 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   if (!robust) return;
   RobustFit fit = outliers_at(s.observations, *robust);
   if (fit.outliers.empty()) return;
-  if (std::optional<RobustFit> judged = outliers_by_richer_lenses(s, *robust, fit, options)) {
+  if (std::optional<RobustFit> judged =
+          outliers_by_richer_lenses(s.observations, *robust, fit, options)) {
     judged->state.rig = fit.state.rig;
     judged->state.warp_m = fit.state.warp_m;
     replace_poses(judged->state, fit.state);
@@ -333,7 +271,8 @@ void doubt_structure(const Solution& s,
                      const CalibrationOptions& options,
                      CalibrationSummary& summary) {
   const bool free = s.problem.priors.empty() && s.cost.free.cols() == s.cost.free.rows();
-  if (!free || summary.rms_px > largest_corner_noise_px || summary.rms_px < rounding_px) return;
+  if (!free || summary.rms_px > largest_corner_noise_px || summary.rms_px < exact_corners_px)
+    return;
   std::optional<ResidualFinding> finding;
   if (s.problem.warp == BoardWarp::known && !options.board_shape) {
     finding = bent_board_finding(s.observations, s.state);

@@ -14,6 +14,7 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/change_findings.h"
+#include "calib/calibration/result_checks.h"
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
@@ -29,7 +30,6 @@ namespace {
 constexpr double level = 0.01;  // of the tests
 constexpr int fewest_views_of_effects = 8;
 constexpr std::size_t most_points_of_effects = 150;
-constexpr double least_residual_px = 1e-3;
 constexpr const char* no_minimum =
     "no minimum with the board's shape and motion was found; calibrate without --board-shape and "
     "--motion";
@@ -48,6 +48,26 @@ CalibrationEffects effects_of(const EffectsMinimum& minimum,
                                  minimum.shape_m.segment<3>(3 * static_cast<Eigen::Index>(i)));
   }
   return effects;
+}
+
+/// Why the effects are not looked for; empty if they are.
+std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOptions& options) {
+  const CalibrationSummary& summary = *usual.calibration;
+  if (options.warp == BoardWarp::free) return "the board's warp is estimated";
+  if (options.pixel_sigma_px > 0 || options.white_noise) return "the noise is given";
+  if (summary.views < fewest_views_of_effects) {
+    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_effects);
+  }
+  for (const std::string& doubt : summary.trust_warnings) {
+    if (!doubt.starts_with(bent_board_doubt)) return "the calibration is doubtful";
+  }
+  if (summary.rms_px < exact_corners_px) return "the corners are exact";
+  const std::size_t points = usual.evidence->observations.target_m.size();
+  if (points > most_points_of_effects) {
+    return fmt::format("a board of {} points takes too long; --board-shape estimates its shape",
+                       points);
+  }
+  return {};
 }
 
 }  // namespace
@@ -88,30 +108,6 @@ void move_to_effects(const CalibrationOptions& options,
   if (minimum.converged) return;
   summary.trust_warnings.emplace_back(no_minimum);
 }
-
-namespace {
-
-/// Why the effects are not looked for; empty if they are.
-std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOptions& options) {
-  const CalibrationSummary& summary = *usual.calibration;
-  if (options.warp == BoardWarp::free) return "the board's warp is estimated";
-  if (options.pixel_sigma_px > 0 || options.white_noise) return "the noise is given";
-  if (summary.views < fewest_views_of_effects) {
-    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_effects);
-  }
-  for (const std::string& doubt : summary.trust_warnings) {
-    if (!doubt.starts_with(bent_board_doubt)) return "the calibration is doubtful";
-  }
-  if (summary.rms_px < least_residual_px) return "the corners are exact";
-  const std::size_t points = usual.evidence->observations.target_m.size();
-  if (points > most_points_of_effects) {
-    return fmt::format("a board of {} points takes too long; --board-shape estimates its shape",
-                       points);
-  }
-  return {};
-}
-
-}  // namespace
 
 bool EffectsTest::has_shape() const { return shape && shape->p_value < level; }
 bool EffectsTest::has_motion() const { return motion && motion->p_value < level; }

@@ -12,6 +12,9 @@
 
 namespace vernier::internal {
 
+/// Residuals of corners whose rms is smaller are not noise: the corners are exact.
+inline constexpr double exact_corners_px = 1e-3;
+
 /// Trust warnings derived from the result of a calibration; std::nullopt or empty if there is none.
 
 /// Scaled condition number of a covariance (calib/covariance.h) above which undetermined directions

@@ -41,14 +41,6 @@ BoardObservations thinned(BoardObservations observations) {
   });
 }
 
-std::vector<RigPrior> priors_of(const RigEstimate& estimate) {
-  std::vector<RigPrior> priors;
-  for (const GaussianRigPrior& known : estimate.evidence->priors) {
-    priors.push_back(rig_prior(estimate.rig, known));
-  }
-  return priors;
-}
-
 }  // namespace
 
 RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts) {

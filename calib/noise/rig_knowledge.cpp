@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {
@@ -24,6 +25,14 @@ RigKnowledge knowledge_of_priors(const std::vector<RigPrior>& priors,
     all.score.head(n) += J.transpose() * prior.information * offset.delta;
   }
   return all;
+}
+
+std::vector<RigPrior> priors_of(const RigEstimate& estimate) {
+  std::vector<RigPrior> priors;
+  for (const GaussianRigPrior& known : estimate.evidence->priors) {
+    priors.push_back(rig_prior(estimate.rig, known));
+  }
+  return priors;
 }
 
 }  // namespace vernier::internal

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {
@@ -22,5 +23,8 @@ RigKnowledge knowledge_of_priors(const std::vector<RigPrior>& priors,
                                  const Rig& rig,
                                  const Eigen::MatrixXd& E,
                                  Eigen::Index unknowns);
+
+/// The priors of a calibration, at its rig. It must have evidence.
+std::vector<RigPrior> priors_of(const RigEstimate& estimate);
 
 }  // namespace vernier::internal

@@ -26,13 +26,9 @@ namespace {
 
 /// tr(C_bound P), the part of the parameters that the priors P determine.
 double prior_parameters(const RigEstimate& estimate) {
-  std::vector<RigPrior> priors;
-  for (const GaussianRigPrior& known : estimate.evidence->priors) {
-    priors.push_back(rig_prior(estimate.rig, known));
-  }
   const Eigen::Index n = parameter_count(estimate.rig);
   const RigKnowledge known =
-      knowledge_of_priors(priors, estimate.rig, Eigen::MatrixXd::Identity(n, n), n);
+      knowledge_of_priors(priors_of(estimate), estimate.rig, Eigen::MatrixXd::Identity(n, n), n);
   return known.information.size() == 0 ? 0 : (*estimate.covariance_mvb * known.information).trace();
 }
 

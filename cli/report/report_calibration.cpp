@@ -161,7 +161,7 @@ Json report_rig(const RigEstimate& estimate,
     }
   }
   if (proof == Validation::make) {
-    json["proof"] = report_validation(estimate, file, session);
+    json["proof"] = report_validation(estimate, usual, file, session);
     add_warnings(json["proof"]["warnings"], json["calibration"]["warnings"]);
   }
   return json;

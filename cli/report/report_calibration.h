@@ -26,8 +26,9 @@ Json report_projection(const RigEstimate& estimate);
 /// Influence of each frame on the estimate.
 Json report_views(const RigEstimate& estimate);
 /// Cross-validation: richer lens models on held-out views, lengths on held-out boards; notes give
-/// the reason for missing parts.
+/// the reason for missing parts. `usual`: the same corners without random effects.
 Json report_validation(const RigEstimate& estimate,
+                       const RigEstimate& usual,
                        const std::string& file,
                        const Session& session);
 

@@ -124,6 +124,7 @@ void add_halves(const BoardObservations& observations,
 }  // namespace
 
 Json report_validation(const RigEstimate& estimate,
+                       const RigEstimate& usual,
                        const std::string& file,
                        const Session& session) {
   Json json{{"notes", Json::array()}, {"warnings", Json::array()}};
@@ -139,7 +140,6 @@ Json report_validation(const RigEstimate& estimate,
     return json;
   }
   try {
-    const RigEstimate usual = without_effects(estimate);
     add_models(usual, options_to_solve_again(usual), json);
   } catch (const Error& error) {
     note(fmt::format("Lens models were not compared: {}.", error.what()));

@@ -19,6 +19,15 @@
 
 namespace vernier::test {
 
+/// Components of which every one matters.
+inline constexpr internal::CornerNoise all_parts{.white_px = 0.11,
+                                                 .field_px = 0.09,
+                                                 .field_length_m = 0.05,
+                                                 .motion_rad = 1e-3,
+                                                 .motion_m = 2e-4,
+                                                 .shape_plane_m = 5e-5,
+                                                 .shape_height_m = 1.5e-4};
+
 /// A simulated board whose corners have all of calib/noise/corner_noise.h, with the truth of each.
 struct NoisyBoard {
   SimulatedBoard board;

@@ -32,13 +32,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Want = RestrictedLikelihood::Want;
 
-constexpr CornerNoise all_parts{.white_px = 0.11,
-                                .field_px = 0.09,
-                                .field_length_m = 0.05,
-                                .motion_rad = 1e-3,
-                                .motion_m = 2e-4,
-                                .shape_plane_m = 5e-5,
-                                .shape_height_m = 1.5e-4};
+using test::all_parts;
 
 /// The corners from `first` on are not seen, `count` of them.
 void hide(BoardView& view, int first, int count) {

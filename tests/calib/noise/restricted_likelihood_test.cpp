@@ -26,13 +26,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr CornerNoise all_parts{.white_px = 0.11,
-                                .field_px = 0.09,
-                                .field_length_m = 0.05,
-                                .motion_rad = 1e-3,
-                                .motion_m = 2e-4,
-                                .shape_plane_m = 5e-5,
-                                .shape_height_m = 1.5e-4};
+using test::all_parts;
 
 /// Eight views of a small board, one of which lacks corners in one camera.
 RigEstimate small_calibration(const CalibrationOptions& how = {}) {

@@ -83,7 +83,7 @@ class Trials:
     def outcome(self, call, folder):
         """What a complete run leaves: its files, a store by what the program reads of it."""
         found = {name: content for name, content in self.files(folder).items()
-                 if not name.endswith(('.sqlite', '-wal', '-shm', '.lock'))
+                 if not name.endswith(('.sqlite', '-wal', '-shm', '-journal', '.lock'))
                  and not fnmatch.fnmatch(pathlib.Path(name).name, '.vernier-*.tmp')}
         if call.name == 'study':
             done = subprocess.run([self.program, 'study', 'status', 'out', '--json'], cwd=folder,

@@ -10,11 +10,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <climits>
 #include <cstddef>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "calib/error.h"
@@ -65,7 +68,15 @@ class World : public MpiRanks {
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
     cores_ = part_of_cores();
   }
-  ~World() override { MPI_Finalize(); }
+  /// Gives what is on its way some time: a rank that has left may never receive it.
+  ~World() override {
+    using namespace std::chrono_literals;
+    const auto end = std::chrono::steady_clock::now() + 1s;
+    while (drop_sent(), !sending_.empty() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(1ms);
+    }
+    MPI_Finalize();
+  }
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
@@ -75,11 +86,16 @@ class World : public MpiRanks {
     if (text.size() > static_cast<std::size_t>(INT_MAX)) {
       throw Error("MPI", "a message has more than 2 GB", "run smaller blocks");
     }
-    check(MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD),
+    // MPI_Send would keep a core busy until the other rank receives, if the text is long.
+    drop_sent();
+    Sending& one = sending_.emplace_back(Sending{text});
+    check(MPI_Isend(one.text.data(), static_cast<int>(one.text.size()), MPI_CHAR, to, tag,
+                    MPI_COMM_WORLD, &one.request),
           "sending");
   }
 
   std::optional<Message> receive() override {
+    drop_sent();
     int there = 0;
     MPI_Status status;
     check(MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &there, &status), "looking for messages");
@@ -94,8 +110,21 @@ class World : public MpiRanks {
   }
 
  private:
+  struct Sending {
+    std::string text;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  void drop_sent() {
+    std::erase_if(sending_, [](Sending& one) {
+      int sent = 0;
+      return MPI_Test(&one.request, &sent, MPI_STATUS_IGNORE) != MPI_SUCCESS || sent;
+    });
+  }
+
   static constexpr int tag = 1;
   int rank_ = 0, size_ = 1, cores_ = 1;
+  std::list<Sending> sending_;  // texts stay in their place until they have gone
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ class Communicator {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  /// Returns when the text may be forgotten; it may wait for the other rank to receive.
+  /// Does not wait for the other rank to receive, which this rank's later calls may help.
   virtual void send(int to, const std::string& text) = 0;
   /// The next text, if one has come.
   virtual std::optional<Message> receive() = 0;

@@ -45,7 +45,8 @@ namespace {
 using std::chrono::microseconds;
 
 /// How long a rank without news sleeps before it looks again: MPI's own waiting would keep a core
-/// busy. Doubled each time, so that an answer comes soon while much happens.
+/// busy. Doubled each time, so that an answer comes soon while much happens; units at hand bridge
+/// the longest sleep.
 class Patience {
  public:
   microseconds next(bool had_news) {
@@ -54,7 +55,7 @@ class Patience {
   }
 
  private:
-  static constexpr microseconds shortest{20}, longest{1000};
+  static constexpr microseconds shortest{20}, longest{10'000};
   microseconds wait_ = shortest;
 };
 
@@ -146,14 +147,14 @@ void RankZero::take(const Message& message, Phase& phase) {
   RankMessage said = parse_rank_text(message.text);
   Rank& rank = others_.at(message.from);
   if (const auto* ready = std::get_if<Ready>(&said)) {
-    rank.free_threads = ready->threads;
+    rank.threads = ready->threads;
   } else if (auto* computed = std::get_if<Computed>(&said)) {
-    ++rank.free_threads;
+    --rank.given;
     phase.finish(computed->number, std::move(computed->result));
   } else if (const auto* failed = std::get_if<Failed>(&said)) {
     note_failure(failure_of(*failed, who(message.from)));
     std::erase_if(phase.running, [&](const auto& one) { return one.second.rank == message.from; });
-    rank.free_threads = 0;
+    rank.threads = 0;
   } else if (std::holds_alternative<Left>(said)) {
     for (auto& [number, one] : phase.running) {
       if (one.rank == message.from) phase.waiting.push_front(std::move(one.unit));
@@ -176,6 +177,12 @@ void RankZero::take_own(WorkerThreads& own, Phase& phase, microseconds patience)
   }
 }
 
+int RankZero::all_threads(const WorkerThreads& own) const {
+  int all = own.threads();
+  for (const auto& [rank, other] : others_) all += other.threads;
+  return all;
+}
+
 void RankZero::hand_out(Phase& phase, WorkerThreads& own) {
   if (failure_ || stop_.stop_requested()) return;
   const auto give = [&](int rank, auto start) {
@@ -188,9 +195,15 @@ void RankZero::hand_out(Phase& phase, WorkerThreads& own) {
   while (!phase.waiting.empty() && own.unfinished() < own.threads()) {
     give(0, [&](std::int64_t number, const WorkUnit& unit) { own.start(number, unit); });
   }
+  // Towards the end a unit at hand would wait while threads elsewhere have none.
+  const std::size_t many = 2 * static_cast<std::size_t>(all_threads(own));
   for (auto& [rank, other] : others_) {
-    while (!phase.waiting.empty() && other.free_threads > 0) {
-      --other.free_threads;
+    const auto has_room = [&, &other = other] {
+      const int at_hand = phase.waiting.size() >= many ? other.threads : 0;
+      return !phase.waiting.empty() && other.given < other.threads + at_hand;
+    };
+    while (has_room()) {
+      ++other.given;
       give(rank, [&, to = rank](std::int64_t number, const WorkUnit& unit) {
         ranks_.send(to, rank_text(Assigned{number, unit}));
       });
@@ -256,6 +269,7 @@ void serve_units(WorkerThreads& own, Communicator& ranks, const std::stop_token&
       if (!assigned) fail_unexpected("rank 0");
       if (!stop.stop_requested()) own.start(assigned->number, assigned->unit);
     }
+    if (stop.stop_requested()) own.drop_waiting();
     if (grace.is_over(stop.stop_requested()) || (stop.stop_requested() && own.unfinished() == 0)) {
       ranks.send(0, rank_text(Left{}));
       wait_for_end(ranks);

@@ -21,14 +21,16 @@
 #include "sim/study/worker_threads.h"
 
 /// One study on several processes: rank 0 reads and writes the store, hands out units one at a time
-/// to whoever has a thread free, and computes too; the others compute. Which rank computes a unit
-/// does not matter to its result.
+/// to whoever has a thread free, and computes too; the others compute, each thread with a unit at
+/// hand to begin when it has finished one. Which rank computes a unit does not matter to its
+/// result.
 ///
 /// Rank r > 0          rank 0
 ///   Hello ->            all ranks are of the same study and instruction set, or it throws
 ///          <- Welcome   unless nothing is missing
 ///   Ready ->
-///          <- Assigned  as many as it has threads, then one for each result
+///          <- Assigned  two for each of its threads, then one for each result; towards the end,
+///                       one for each thread
 ///   Computed ->         stored
 ///          <- End       all is stored, or the study ended otherwise
 namespace vernier::sim::internal {
@@ -52,7 +54,8 @@ class RankZero {
  private:
   struct Rank {
     std::string host;
-    int free_threads = 0;
+    int threads = 0;  // 0: none that takes units
+    int given = 0;    // units, not yet finished
   };
   struct Phase;
 
@@ -60,6 +63,7 @@ class RankZero {
   void take(const Message& message, Phase& phase);
   void take_own(WorkerThreads& own, Phase& phase, std::chrono::microseconds patience);
   void hand_out(Phase& phase, WorkerThreads& own);
+  int all_threads(const WorkerThreads& own) const;
   void note_failure(std::exception_ptr failure);
 
   Communicator& ranks_;

@@ -39,6 +39,12 @@ void WorkerThreads::start(std::int64_t number, WorkUnit unit) {
   given_changed_.notify_one();
 }
 
+void WorkerThreads::drop_waiting() {
+  const std::lock_guard lock(mutex_);
+  unfinished_ -= static_cast<int>(given_.size());
+  given_.clear();
+}
+
 std::vector<FinishedUnit> WorkerThreads::take_finished(std::chrono::microseconds patience) {
   std::vector<FinishedUnit> taken;
   std::unique_lock lock(mutex_);

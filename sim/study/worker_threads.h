@@ -35,6 +35,8 @@ class WorkerThreads {
   WorkerThreads& operator=(const WorkerThreads&) = delete;
 
   void start(std::int64_t number, WorkUnit unit);
+  /// Drops the units that no thread has begun.
+  void drop_waiting();
   /// How many units were started and not yet taken back.
   int unfinished() const { return unfinished_; }
   int threads() const { return static_cast<int>(threads_.size()); }

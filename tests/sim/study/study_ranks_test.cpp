@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <filesystem>
@@ -28,6 +29,7 @@
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
+#include "sim/study/work_units.h"
 #include "tests/sim/study/stored_example.h"
 #include "tests/support/example_study.h"
 
@@ -156,6 +158,45 @@ TEST_F(StudyRanks, AllTakePart) {
   };
   EXPECT_EQ(run("all", 3, other), "");
   EXPECT_EQ(computed, (std::set<int>{1, 2}));
+}
+
+TEST_F(StudyRanks, AUnitIsAtHandWhileManyWait) {
+  const Study study = test::example_study(200);
+  Boxes boxes(2);
+  ThreadRank zero(boxes, 0), one(boxes, 1);
+  int most = 0;
+  // computes nothing before two units are there
+  std::thread other([&] {
+    const StudyWork work = study_work(study);
+    UnitComputer computer(study, work);
+    computer.prepare_maps();
+    const std::string set(instruction_set());
+    one.send(0, rank_text(Hello{work_fingerprint(work), set, "node7"}));
+    std::deque<Assigned> given;
+    int answers = 0;
+    while (true) {
+      if (const std::optional<Message> message = one.receive()) {
+        const RankMessage said = parse_rank_text(message->text);
+        if (std::holds_alternative<End>(said)) return;
+        if (std::holds_alternative<Welcome>(said)) one.send(0, rank_text(Ready{1}));
+        if (const auto* assigned = std::get_if<Assigned>(&said)) given.push_back(*assigned);
+        most = std::max(most, static_cast<int>(given.size()));
+      } else if (given.size() >= (answers == 0 ? 2 : 1)) {
+        const Assigned next = given.front();
+        given.pop_front();
+        one.send(0, rank_text(Computed{next.number, computer.compute(next.unit, {})}));
+        ++answers;
+      } else {
+        std::this_thread::yield();
+      }
+    }
+  });
+  StudyRun job{.folder = folder_ / "at_hand", .threads = 1};
+  job.ranks = &zero;
+  run_study(study, job);
+  end_ranks(zero);
+  other.join();
+  EXPECT_EQ(most, 2);
 }
 
 TEST_F(StudyRanks, NothingMissingIsNothingToDo) {

@@ -81,7 +81,7 @@ struct LoadedStudy {
 
 LoadedStudy load(const std::string& folder, Session& session) {
   LoadedStudy loaded{folder, open_folder(folder, session), {}};
-  loaded.results = study_results(loaded.study, folder);
+  loaded.results = study_results(loaded.study, folder, listed_of_a_cell(loaded.study));
   const StudyResults& results = loaded.results;
   if (results.blocks_done == 0) {
     throw Error(folder, "contains no finished block", "run the study first");

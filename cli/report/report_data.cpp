@@ -64,6 +64,10 @@ Json swept_keys_json(const StudyResults& results) {
 
 }  // namespace
 
+std::size_t listed_of_a_cell(const Study& study) {
+  return std::max<std::size_t>(20, most_listed / study.file.cells.size());
+}
+
 Json report_study(const Study& study, const StudyResults& results) {
   const StudyCell& first = study.file.cells[0];
   Json json{{"file", "study.toml"},
@@ -79,14 +83,11 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
-  const std::size_t most_of_a_cell = std::max<std::size_t>(20, most_listed / results.cells.size());
   for (std::size_t i = 0; i < results.cells.size(); ++i) {
     Json cell = cell_json(results.cells[i]);
     cell["trial_list"] = Json::array();
-    for (const TrialResult& t : results.cells[i].trials) {
-      if (cell["trial_list"].size() == most_of_a_cell) break;
+    for (const TrialResult& t : results.cells[i].trials)
       cell["trial_list"].push_back(trial_json(t));
-    }
     json["cells"].push_back(std::move(cell));
   }
   if (study.file.sweep_keys.size() == 1) {

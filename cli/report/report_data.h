@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "sim/world.h"
 
 namespace vernier::cli {
+
+/// The number of trials of each cell that the page lists.
+std::size_t listed_of_a_cell(const Study& study);
 
 /// Data of the report page (for rigs, see cli/report/report_calibration.h).
 Json report_study(const Study& study, const StudyResults& results);

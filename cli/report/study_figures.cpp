@@ -105,7 +105,7 @@ class FigureMaker {
  public:
   explicit FigureMaker(const StudyResults& results)
       : cells_(results.cells), layout_(layout_of(results)) {
-    for (const CellResult& cell : cells_) summaries_.push_back(summarise(cell));
+    for (const CellResult& cell : cells_) summaries_.push_back(cell.summary);
   }
 
   PaperFigure figure(const CellQuantity& quantity) const {

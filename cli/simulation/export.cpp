@@ -41,7 +41,7 @@ void run(const ExportArguments& options, Session& session) {
   FileInProgress& file = outputs.add(options.output);
   const StudyResults results = options.trials
                                    ? export_trials(study, options.folder, options.output, file)
-                                   : study_results(study, options.folder);
+                                   : study_results(study, options.folder, 0);
   std::size_t rows = 0;
   if (options.trials) {
     for (const CellResult& cell : results.cells) {

@@ -118,7 +118,7 @@ void add_interval(Row& row, const std::string& name, const std::optional<Interva
 }
 
 void add_figures(Row& row, const CellResult& cell) {
-  const CellSummary s = summarise(cell);
+  const CellSummary& s = cell.summary;
   const double of = s.trials > 0 ? 1 : no_number;  // a cell without trials has no rates and times
   row.whole("trials", s.trials);
   row.whole("maps", s.maps);

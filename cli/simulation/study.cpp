@@ -38,7 +38,7 @@ struct StudyArguments {
 };
 
 void print(const Study& study, const fs::path& folder, Session& session) {
-  const StudyResults results = study_results(study, folder);
+  const StudyResults results = study_results(study, folder, 0);
   tell_failed_trials(results, session);
   tell_failed_calibrations(results, session);
   session.result(study_json(study, results), study_table(study, results));

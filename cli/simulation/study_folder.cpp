@@ -36,9 +36,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Stated against observed error rates; empty for a method that states none.
-Json reliability_json(const std::vector<TrialResult>& trials) {
+Json reliability_json(const StatedErrors& stated) {
   Json json = Json::array();
-  for (const ReliabilityBin& bin : reliability(trials)) {
+  for (const ReliabilityBin& bin : stated.reliability()) {
     json.push_back({{"stated_error", bin.stated_error},
                     {"error", static_cast<double>(bin.wrong) / bin.answers},
                     {"error_interval_95", {bin.error_interval_95.low, bin.error_interval_95.high}},
@@ -49,9 +49,9 @@ Json reliability_json(const std::vector<TrialResult>& trials) {
 }
 
 /// Coverage and errors at thresholds of the stated error rate.
-Json thresholds_json(const std::vector<TrialResult>& trials) {
+Json thresholds_json(const StatedErrors& stated) {
   Json json = Json::array();
-  for (const ThresholdFigures& at : thresholds(trials)) {
+  for (const ThresholdFigures& at : stated.thresholds()) {
     json.push_back({{"max_error_rate", at.max_error_rate},
                     {"coverage", at.coverage},
                     {"answered", at.answered},
@@ -134,7 +134,7 @@ std::string short_label(const StudyCell& cell) {
 }
 
 Json cell_json(const CellResult& cell) {
-  const CellSummary s = summarise(cell);
+  const CellSummary& s = cell.summary;
   Json settings;
   for (const auto& [key, value] : cell.cell.settings) settings[key] = setting_json(value);
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
@@ -178,8 +178,8 @@ Json cell_json(const CellResult& cell) {
           {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
           {"unaliased_share_interval_95",
            cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
-          {"reliability", reliability_json(cell.trials)},
-          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.trials) : Json()},
+          {"reliability", reliability_json(cell.stated)},
+          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.stated) : Json()},
           {"calibration", calibrations_json(cell.calibrations)}};
 }
 

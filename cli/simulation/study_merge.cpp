@@ -103,7 +103,7 @@ void merge_studies(const std::vector<fs::path>& parts,
     claim.withdraw({});
     throw;
   }
-  const StudyResults results = study_results(study, target);
+  const StudyResults results = study_results(study, target, 0);
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(
         fmt::format("{} of {} blocks are missing from the merged study{}",

@@ -11,7 +11,6 @@
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "sim/sources.h"
-#include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/told/fresh_calibrations.h"
 
@@ -61,21 +60,21 @@ void run_in_folder(const FolderClaim& claim,
 
 void tell_failed_trials(const StudyResults& results, Session& session) {
   for (const CellResult& cell : results.cells) {
-    const int failed = summarise(cell).failed;
+    const int failed = cell.summary.failed;
     if (failed == 0) continue;
     const SourceSettings& sources = cell.cell.experiment.sources;
     if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
       session.warn(
           fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "
                       "those of their maps, did",
-                      failed, cell.trials.size(), cell.cell.label));
+                      failed, cell.summary.trials, cell.cell.label));
       continue;
     }
     session.add_trust_warning(fmt::format(
         "{} failed in {} of {} trials of cell \"{}\"; {}",
         sources.command.empty() && sources.own.empty() ? "the localiser"
                                                        : "the localiser or a source of error",
-        failed, cell.trials.size(), cell.cell.label,
+        failed, cell.summary.trials, cell.cell.label,
         sources.calibration > 0
             ? fmt::format("vernier localise with the same settings says why, unless they were told "
                           "a rig that no cameras can have (psi_c = {:g})",

@@ -265,7 +265,7 @@ std::string study_table(const Study& study, const StudyResults& results) {
   CellFigures figures;
   std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
-    figures.summaries.push_back(summarise(cell));
+    figures.summaries.push_back(cell.summary);
     figures.ceilings.push_back(cell.ceiling);
     const CellSummary& s = figures.summaries.back();
     if (!s.success_interval_95) missing.insert(s.why_no_interval);

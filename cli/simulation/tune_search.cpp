@@ -23,7 +23,6 @@
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_run.h"
 #include "cli/simulation/tune_result.h"
-#include "sim/study/cell_summary.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
@@ -127,9 +126,9 @@ StudyResults race(const Tuning& tuning,
   run_in_folder(claim, tuning.study, std::move(job), "tune: race", session);
   StudyResults results = study_results(tuning.study, folder);
   for (const CellResult& cell : results.cells) {
-    if (const int failed = summarise(cell).failed; failed > 0) {
+    if (const int failed = cell.summary.failed; failed > 0) {
       session.warn(fmt::format("{} of {} trials of cell \"{}\" have failed", failed,
-                               cell.trials.size(), cell.cell.label));
+                               cell.summary.trials, cell.cell.label));
     }
   }
   return results;

@@ -3,14 +3,14 @@
 #include "sim/study/cell_comparison.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <map>
+#include <cstddef>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "calib/statistics/distributions.h"
-#include "localise/place.h"
-#include "sim/experiment.h"
+#include "sim/study/block_outcomes.h"
 #include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
@@ -18,14 +18,22 @@
 namespace vernier::sim::internal {
 
 using namespace vernier::internal;
-using namespace localise;
 
 namespace {
 
-std::map<std::uint32_t, const TrialResult*> by_number(const CellResult& cell) {
-  std::map<std::uint32_t, const TrialResult*> trials;
-  for (const TrialResult& trial : cell.trials) trials[trial.trial] = &trial;
-  return trials;
+/// The blocks of b beside those of a with the same trials; both ascend.
+std::vector<std::pair<const BlockOutcomes*, const BlockOutcomes*>> common_blocks(
+    const CellResult& a, const CellResult& b) {
+  std::vector<std::pair<const BlockOutcomes*, const BlockOutcomes*>> common;
+  auto at = a.outcomes.begin();
+  for (const BlockOutcomes& of_b : b.outcomes) {
+    while (at != a.outcomes.end() && at->first < of_b.first) ++at;
+    if (at == a.outcomes.end()) break;
+    if (at->first == of_b.first && at->succeeded.size() == of_b.succeeded.size()) {
+      common.emplace_back(&*at, &of_b);
+    }
+  }
+  return common;
 }
 
 /// McNemar's exact p-value: the smaller count under Binomial(both counts, 1/2), both tails.
@@ -38,16 +46,10 @@ double exact_mcnemar(int only_a, int only_b) {
 }  // namespace
 
 bool share_queries(const CellResult& a, const CellResult& b) {
-  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
-  bool shared = false;
-  for (const TrialResult& trial : b.trials) {
-    const auto found = trials_of_a.find(trial.trial);
-    if (found == trials_of_a.end()) continue;
-    const Pose2D &p = found->second->truth, &q = trial.truth;
-    if (p.x_m != q.x_m || p.y_m != q.y_m || p.heading_rad != q.heading_rad) return false;
-    shared = true;
-  }
-  return shared;
+  const auto common = common_blocks(a, b);
+  return !common.empty() && std::all_of(common.begin(), common.end(), [](const auto& pair) {
+    return pair.first->queries == pair.second->queries;
+  });
 }
 
 PairedComparison compare(const CellResult& a, const CellResult& b) {
@@ -56,22 +58,18 @@ PairedComparison compare(const CellResult& a, const CellResult& b) {
                 "the cells have no common queries",
                 "compare cells with the same protocol and seed");
   }
-  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
   PairedComparison c;
-  std::map<std::uint32_t, MapDifference> by_map;
-  for (const TrialResult& trial : b.trials) {
-    const auto found = trials_of_a.find(trial.trial);
-    if (found == trials_of_a.end()) continue;
-    const bool in_a = found->second->success(), in_b = trial.success();
-    (in_a ? (in_b ? c.both : c.only_a) : (in_b ? c.only_b : c.neither))++;
-    MapDifference& map = by_map[trial.trial / static_cast<std::uint32_t>(a.trials_per_block)];
-    map.difference += in_a - in_b;
-    map.discordant += in_a != in_b;
-    ++map.trials;
-  }
   std::vector<MapDifference> maps;
-  maps.reserve(by_map.size());
-  for (const auto& [block, map] : by_map) maps.push_back(map);
+  for (const auto& [of_a, of_b] : common_blocks(a, b)) {
+    MapDifference& map = maps.emplace_back();
+    for (std::size_t i = 0; i < of_a->succeeded.size(); ++i) {
+      const bool in_a = of_a->succeeded[i], in_b = of_b->succeeded[i];
+      (in_a ? (in_b ? c.both : c.only_a) : (in_b ? c.only_b : c.neither))++;
+      map.difference += in_a - in_b;
+      map.discordant += in_a != in_b;
+      ++map.trials;
+    }
+  }
   c.maps = static_cast<int>(maps.size());
   if (const std::optional<double> p = paired_p_value(maps)) {
     c.p_value = *p;

@@ -11,8 +11,8 @@
 
 namespace vernier::sim::internal {
 
-/// Whether two cells have the same queries: all trials that both contain start at the same pose,
-/// and there is at least one. False if the seed or the query protocol is swept.
+/// Whether two cells have the same queries: all trials of blocks that both contain start at the
+/// same pose, and there is at least one. False if the seed or the query protocol is swept.
 bool share_queries(const CellResult& a, const CellResult& b);
 
 /// Two cells on the same trials: number in which both succeeded, only one, neither. The p-values

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "calib/interval.h"
-#include "sim/study/study.h"
 
 namespace vernier::sim::internal {
 
-/// Statistics of a cell.
+/// The figures of a cell's trials.
 struct CellSummary {
   int trials = 0;
   int maps = 0;  ///< number of recorded maps
@@ -30,6 +29,5 @@ struct CellSummary {
   double median_heading_error_rad = 0;
   double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
 };
-CellSummary summarise(const CellResult& cell);
 
 }  // namespace vernier::sim::internal

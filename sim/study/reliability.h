@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
+#include <array>
 #include <vector>
 
 #include "calib/interval.h"
@@ -19,12 +19,6 @@ struct ReliabilityBin {
   Interval error_interval_95;
 };
 
-/// Stated against observed error rates of best guesses, sure or not, in ranges of about half a
-/// decade: a reliability diagram (Murphy and Winkler, Applied Statistics 26, 1977). Trials without
-/// a guess are left out, and so are ranges without answers. Empty for a method that states no
-/// probabilities.
-std::vector<ReliabilityBin> reliability(std::span<const TrialResult> trials);
-
 /// What a threshold of the stated error rate gives: the queries answered and the errors among them.
 struct ThresholdFigures {
   double max_error_rate = 1;
@@ -32,8 +26,29 @@ struct ThresholdFigures {
   int answered = 0, wrong = 0;
 };
 
-/// The same trials at other thresholds, 1 to 0.0001: of one look only, as further looks are taken
-/// depending on the threshold. Empty for a method that states no probabilities.
-std::vector<ThresholdFigures> thresholds(std::span<const TrialResult> trials);
+/// Stated against observed error rates of best guesses, sure or not. Trials are added one by one
+/// and not kept.
+class StatedErrors {
+ public:
+  void add(const TrialResult& trial);
+
+  /// In ranges of about half a decade: a reliability diagram (Murphy and Winkler, Applied
+  /// Statistics 26, 1977). Trials without a guess are left out, and so are ranges without answers.
+  /// Empty for a method that states no probabilities.
+  std::vector<ReliabilityBin> reliability() const;
+  /// The same trials at other thresholds, 1 to 0.0001: of one look only, as further looks are
+  /// taken depending on the threshold. Empty for a method that states no probabilities.
+  std::vector<ThresholdFigures> thresholds() const;
+
+ private:
+  struct Count {
+    int answers = 0, wrong = 0;
+    double stated_error = 0;  // sum
+  };
+  std::array<Count, 12> by_range_{};  // of the stated error rate
+  std::array<Count, 13> up_to_{};     // at each threshold
+  int trials_ = 0;
+  bool states_probabilities_ = false;
+};
 
 }  // namespace vernier::sim::internal

@@ -16,8 +16,11 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/study/block_outcomes.h"
 #include "sim/study/budget.h"
+#include "sim/study/cell_summary.h"
 #include "sim/study/instruction_sets.h"
+#include "sim/study/reliability.h"
 #include "sim/study/study_file.h"
 #include "sim/told/fresh_calibrations.h"
 #include "sim/world.h"
@@ -110,8 +113,11 @@ struct WorldCeiling {
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;            ///< ascending
+  CellSummary summary;
+  StatedErrors stated;                        ///< how sure the localiser was, and how right
   std::vector<ClusterCount> maps;             ///< one entry per block
+  std::vector<BlockOutcomes> outcomes;        ///< the same
+  std::vector<TrialResult> trials;            ///< ascending; the first, as many as were asked for
   int trials_per_block = 50;                  ///< trial t belongs to block t / trials_per_block
   std::optional<WorldCeiling> ceiling;        ///< none until all of its queries are stored
   std::optional<double> interval_width = {};  ///< at which the study stops the cell
@@ -137,14 +143,20 @@ std::filesystem::path store_file(const std::filesystem::path& folder, const Shar
 std::string command_key(const std::string& command);
 std::string machine_key(const std::string& machine);
 
-/// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree.
+/// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree. So many
+/// trials of each cell are kept, at most; memory grows with them, and by 24 bytes a trial of the
+/// largest cell.
+StudyResults study_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           std::size_t kept_of_a_cell);
+/// The same with all trials.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
 
 /// Called with each block that is done, cell by cell, its trials ascending; `cell` is the place in
 /// StudyFile::cells.
-using BlockVisitor = std::function<void(std::size_t cell, std::vector<TrialResult> trials)>;
+using BlockVisitor = std::function<void(std::size_t cell, const std::vector<TrialResult>& trials)>;
 
-/// The same without the trials, which are given to `visit` instead: memory does not grow with them.
+/// The same without trials, which are given to `visit` instead.
 StudyResults visit_results(const Study& study,
                            const std::filesystem::path& folder,
                            const BlockVisitor& visit);

@@ -6,15 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/error.h"
-#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/budget.h"
+#include "sim/study/cell_tally.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -88,33 +89,40 @@ StudyResults visit_results(const Study& study,
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const auto source = static_cast<std::size_t>(work.same_as[cell]);
     const int wanted = results.cells[cell].budget.wanted;  // fewer: a cell that has stopped
+    CellTally tally(results.cells[cell]);
     for (int from = 0; from < wanted; from += at_a_time) {
       const int end = std::min(from + at_a_time, wanted);
       for (StoredBlock& block : stored.read({work.cell_keys[cell], from, end})) {
         const BlockJob& job = jobs[source][static_cast<std::size_t>(block.block)];
         if (static_cast<int>(block.trials.size()) < job.count) continue;
-        std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
+        const std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
         if (source == cell) ++results.blocks_done;
-        const auto successes = std::count_if(trials.begin(), trials.end(),
-                                             [](const TrialResult& t) { return t.success(); });
-        results.cells[cell].maps.push_back(
-            {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())});
-        visit(cell, std::move(trials));
+        tally.add(trials);
+        visit(cell, trials);
       }
     }
+    tally.finish();
   }
   return results;
 }
 
-StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
-  std::vector<std::vector<TrialResult>> all(study.file.cells.size());
+StudyResults study_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           std::size_t kept_of_a_cell) {
+  std::vector<std::vector<TrialResult>> kept(study.file.cells.size());
   StudyResults results =
-      visit_results(study, folder, [&](std::size_t cell, std::vector<TrialResult> trials) {
-        all[cell].reserve(static_cast<std::size_t>(study.file.trials));
-        all[cell].insert(all[cell].end(), trials.begin(), trials.end());
+      visit_results(study, folder, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
+        const std::size_t room = kept_of_a_cell - kept[cell].size();
+        kept[cell].insert(
+            kept[cell].end(), trials.begin(),
+            trials.begin() + static_cast<std::ptrdiff_t>(std::min(room, trials.size())));
       });
-  for (std::size_t i = 0; i < all.size(); ++i) results.cells[i].trials = std::move(all[i]);
+  for (std::size_t i = 0; i < kept.size(); ++i) results.cells[i].trials = std::move(kept[i]);
   return results;
+}
+
+StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
+  return study_results(study, folder, std::numeric_limits<std::size_t>::max());
 }
 
 }  // namespace vernier::sim::internal

@@ -15,6 +15,7 @@
 #include "calib/error.h"
 #include "sim/sources.h"
 #include "sim/study/cell_comparison.h"
+#include "sim/study/cell_tally.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -100,7 +101,7 @@ TEST(OneAtATime, StandsInEveryCellOfASweepAndIsComparedWithinIt) {
   for (const StudyCell& cell : designed) {
     results.emplace_back();
     results.back().cell = cell;
-    results.back().trials.resize(1);
+    CellTally(results.back()).add(std::vector<TrialResult>(1));
   }
   const std::vector<std::pair<std::size_t, std::size_t>> expected{{1, 2}, {0, 3}, {5, 6}, {4, 7}};
   std::vector<std::pair<std::size_t, std::size_t>> designs;

@@ -33,12 +33,18 @@ TrialResult no_guess() {
   return trial;
 }
 
+StatedErrors all(const std::vector<TrialResult>& trials) {
+  StatedErrors stated;
+  for (const TrialResult& trial : trials) stated.add(trial);
+  return stated;
+}
+
 TEST(Reliability, CountsErrorsByWhatWasStated) {
   std::vector<TrialResult> trials(90, guess(0.97, 0.1));
   trials.insert(trials.end(), 10, guess(0.96, 5));
   trials.insert(trials.end(), 3, guess(0, 7));  // the last range includes its upper border
   trials.insert(trials.end(), 7, no_guess());
-  const std::vector<ReliabilityBin> bins = reliability(trials);
+  const std::vector<ReliabilityBin> bins = all(trials).reliability();
   ASSERT_EQ(bins.size(), 2u);
   EXPECT_EQ(bins[0].answers, 100);
   EXPECT_EQ(bins[0].wrong, 10);
@@ -53,19 +59,19 @@ TEST(Reliability, AThresholdTradesCoverageForErrors) {
   std::vector<TrialResult> trials(80, guess(0.9999, 0.1));
   trials.insert(trials.end(), 10, guess(0.9, 5));
   trials.insert(trials.end(), 10, no_guess());
-  for (const ThresholdFigures& at : thresholds(trials)) {
-    const bool all = at.max_error_rate >= 0.1;
-    EXPECT_EQ(at.answered, all ? 90 : 80) << at.max_error_rate;
-    EXPECT_EQ(at.wrong, all ? 10 : 0) << at.max_error_rate;
-    EXPECT_DOUBLE_EQ(at.coverage, all ? 0.9 : 0.8) << at.max_error_rate;
+  for (const ThresholdFigures& at : all(trials).thresholds()) {
+    const bool both = at.max_error_rate >= 0.1;
+    EXPECT_EQ(at.answered, both ? 90 : 80) << at.max_error_rate;
+    EXPECT_EQ(at.wrong, both ? 10 : 0) << at.max_error_rate;
+    EXPECT_DOUBLE_EQ(at.coverage, both ? 0.9 : 0.8) << at.max_error_rate;
   }
 }
 
 TEST(Reliability, IsEmptyWithoutProbabilities) {
   const std::vector<TrialResult> trials(5, guess(0, 0.1));
-  EXPECT_TRUE(reliability(trials).empty());
-  EXPECT_TRUE(thresholds(trials).empty());
-  EXPECT_TRUE(reliability({}).empty());
+  EXPECT_TRUE(all(trials).reliability().empty());
+  EXPECT_TRUE(all(trials).thresholds().empty());
+  EXPECT_TRUE(all({}).reliability().empty());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/cell_summary.h"
+#include "sim/study/study.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -26,7 +27,7 @@
 #include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
-#include "sim/study/study.h"
+#include "sim/study/cell_tally.h"
 #include "sim/study/study_difference.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
@@ -119,7 +120,7 @@ TEST_F(StudyRuns, AWidthStopsACellAtTheSameBlockHoweverItRuns) {
   EXPECT_LT(cell.budget.wanted, 18);
   EXPECT_EQ(cell.trials.size(), 50u * static_cast<std::size_t>(cell.budget.wanted));
   EXPECT_EQ(one.blocks_done, one.blocks_total);
-  const Interval i = summarise(cell).success_interval_95.value();
+  const Interval i = cell.summary.success_interval_95.value();
   EXPECT_LE(i.high - i.low, 0.37);
   EXPECT_EQ(words(run(s, "two", 2)), words(one));
 
@@ -330,8 +331,8 @@ TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
   }
   const PairedComparison c = compare(a, b);
   EXPECT_EQ(c.both + c.only_a + c.only_b + c.neither, 100);
-  const CellSummary small = summarise(a), large = summarise(b);
-  const double middle = summarise(results.cells[1]).median_error_m;
+  const CellSummary small = a.summary, large = b.summary;
+  const double middle = results.cells[1].summary.median_error_m;
   EXPECT_LT(small.median_error_m, middle);  // psi_c 0.1, 1, 10
   EXPECT_LT(middle, large.median_error_m);
   ASSERT_TRUE(small.success_interval_95);
@@ -372,21 +373,67 @@ TEST_F(StudyRuns, ASweptEndpointErrorIsToldOnlyWhereAskedFor) {
             lines("endpoint_sigma_px = 2\n", "true").first);
 }
 
-CellResult one_cell(int maps, int trials_per_map) {
+/// A cell of trials, so many on each map.
+CellResult cell_of(const std::vector<TrialResult>& trials, int trials_per_map) {
   CellResult cell;
   cell.trials_per_block = trials_per_map;
-  for (int i = 0; i < maps * trials_per_map; ++i) {
-    TrialResult trial;
-    trial.trial = static_cast<std::uint32_t>(i);
-    trial.status = LocalisationStatus::answered;
-    cell.trials.push_back(trial);
+  CellTally tally(cell);
+  const auto step = static_cast<std::size_t>(trials_per_map);
+  for (std::size_t at = 0; at < trials.size(); at += step) {
+    tally.add(std::span(trials).subspan(at, step));
   }
-  cell.maps.assign(maps, {trials_per_map, trials_per_map});
+  tally.finish();
   return cell;
 }
 
+std::vector<TrialResult> right_trials(int number) {
+  std::vector<TrialResult> trials(static_cast<std::size_t>(number));
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    trials[i].trial = static_cast<std::uint32_t>(i);
+    trials[i].status = LocalisationStatus::answered;
+  }
+  return trials;
+}
+
+CellResult one_cell(int maps, int trials_per_map) {
+  return cell_of(right_trials(maps * trials_per_map), trials_per_map);
+}
+
+TEST_F(StudyRuns, FiguresDoNotNeedTheTrials) {
+  const Study s = study(30, "[1, 10]");
+  const StudyResults all = run(s, "kept", 2);
+  for (const std::size_t kept : {0u, 7u, 30u, 1000u}) {
+    const StudyResults some = study_results(s, folder_ / "kept", kept);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const CellResult &a = all.cells[i], &b = some.cells[i];
+      ASSERT_EQ(b.trials.size(), std::min<std::size_t>(kept, 30));
+      for (std::size_t k = 0; k < b.trials.size(); ++k) EXPECT_EQ(b.trials[k].trial, k);
+      EXPECT_EQ(a.summary.success, b.summary.success);
+      EXPECT_EQ(a.summary.median_error_m, b.summary.median_error_m);
+      EXPECT_EQ(a.summary.cpu_ms_p95, b.summary.cpu_ms_p95);
+      EXPECT_EQ(a.stated.thresholds().size(), b.stated.thresholds().size());
+    }
+    EXPECT_EQ(compare(all.cells[0], all.cells[1]).p_value,
+              compare(some.cells[0], some.cells[1]).p_value);
+  }
+  const CellResult& cell = all.cells[0];
+  std::vector<double> errors;
+  int right = 0;
+  for (const TrialResult& t : cell.trials) {
+    right += t.success();
+    if (t.answered()) errors.push_back(t.error_m);
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_EQ(cell.summary.trials, 30);
+  EXPECT_EQ(cell.summary.success, right / 30.0);
+  ASSERT_FALSE(errors.empty());
+  const std::size_t half = errors.size() / 2;
+  EXPECT_NEAR(cell.summary.median_error_m,
+              errors.size() % 2 ? errors[half] : (errors[half - 1] + errors[half]) / 2, 1e-15);
+}
+
 TEST(Summary, SaysWhyThereIsNoInterval) {
-  const CellSummary one = summarise(one_cell(1, 50)), six = summarise(one_cell(6, 3));
+  const CellSummary one = one_cell(1, 50).summary, six = one_cell(6, 3).summary;
   EXPECT_FALSE(one.success_interval_95);
   EXPECT_EQ(one.why_no_interval, "needs 6 maps, has 1");
   EXPECT_TRUE(six.success_interval_95);
@@ -416,35 +463,48 @@ TEST_F(StudyRuns, CellsWithOtherQueriesAreNotCompared) {
 
 TEST(Comparison, CountsMapsAndNotTrials) {
   // all of four maps in favour of a, all of two in favour of b: 80 trials against 40
-  CellResult a = one_cell(6, 20), b = one_cell(6, 20);
+  std::vector<TrialResult> in_a = right_trials(120), in_b = in_a;
   for (std::size_t i = 0; i < 120; ++i) {
-    (i < 80 ? b : a).trials[i].status = LocalisationStatus::no_match;
+    (i < 80 ? in_b : in_a)[i].status = LocalisationStatus::no_match;
   }
-  const PairedComparison c = compare(a, b);
+  const PairedComparison c = compare(cell_of(in_a, 20), cell_of(in_b, 20));
   EXPECT_EQ(c.only_a, 80);
   EXPECT_EQ(c.maps, 6);
   EXPECT_LT(c.mcnemar_p, 1e-3);
   EXPECT_GT(c.p_value, 0.3);
   // the same trials on fewer maps have no p-value
-  a.trials_per_block = b.trials_per_block = 40;
-  EXPECT_TRUE(std::isnan(compare(a, b).p_value));
-  EXPECT_TRUE(std::isnan(compare(a, b).mcnemar_p));
-  EXPECT_EQ(compare(a, b).only_a, 80);
+  const PairedComparison few = compare(cell_of(in_a, 40), cell_of(in_b, 40));
+  EXPECT_TRUE(std::isnan(few.p_value));
+  EXPECT_TRUE(std::isnan(few.mcnemar_p));
+  EXPECT_EQ(few.only_a, 80);
+}
+
+// Cells that were stopped at other blocks are compared on those that both have.
+TEST(Comparison, TakesTheBlocksThatBothHave) {
+  std::vector<TrialResult> trials = right_trials(120);
+  const CellResult all = cell_of(trials, 10);
+  for (TrialResult& trial : trials) trial.status = LocalisationStatus::no_match;
+  trials.resize(70);
+  const CellResult first = cell_of(trials, 10);
+  EXPECT_TRUE(share_queries(all, first));
+  EXPECT_EQ(compare(all, first).only_a, 70);
+  EXPECT_EQ(compare(first, all).only_b, 70);
+  EXPECT_EQ(compare(all, first).maps, 7);
+  trials[33].truth.x_m += 1e-12;
+  EXPECT_FALSE(share_queries(all, cell_of(trials, 10)));
+  EXPECT_FALSE(share_queries(all, CellResult{}));
 }
 
 TEST(McNemar, IsTheExactBinomialTail) {
-  CellResult a, b;
-  a.trials_per_block = b.trials_per_block = 1;
+  std::vector<TrialResult> in_a(10), in_b;
   for (std::uint32_t i = 0; i < 10; ++i) {
-    TrialResult good, bad;
-    good.trial = bad.trial = i;
-    good.status = bad.status = LocalisationStatus::answered;
-    good.error_m = 0.1;
-    bad.error_m = 3;
-    a.trials.push_back(good);
-    b.trials.push_back(i < 2 ? good : bad);
+    in_a[i].trial = i;
+    in_a[i].status = LocalisationStatus::answered;
+    in_a[i].error_m = 0.1;
+    in_b.push_back(in_a[i]);
+    if (i >= 2) in_b[i].error_m = 3;
   }
-  const PairedComparison c = compare(a, b);
+  const PairedComparison c = compare(cell_of(in_a, 1), cell_of(in_b, 1));
   EXPECT_EQ(c.only_a, 8);
   EXPECT_EQ(c.only_b, 0);
   EXPECT_NEAR(c.mcnemar_p, 2.0 / 256, 1e-12);

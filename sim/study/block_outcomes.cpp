@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/block_outcomes.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,10 +13,6 @@
 #include "sim/experiment.h"
 
 namespace vernier::sim::internal {
-
-int BlockOutcomes::successes() const {
-  return static_cast<int>(std::count(succeeded.begin(), succeeded.end(), true));
-}
 
 BlockOutcomes outcomes_of(std::span<const TrialResult> block) {
   BlockOutcomes outcomes;

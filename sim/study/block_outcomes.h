@@ -16,8 +16,6 @@ struct BlockOutcomes {
   std::uint32_t first = 0;      ///< number of its first trial; the others follow
   std::string queries;          ///< fingerprint of the true poses
   std::vector<bool> succeeded;  ///< by trial
-
-  int successes() const;
 };
 
 /// Of trials with ascending numbers, without gaps. Throws std::logic_error if there is one.

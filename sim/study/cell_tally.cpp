@@ -61,8 +61,6 @@ void CellTally::add(std::span<const TrialResult> block) {
   if (block.empty()) return;
   for (const TrialResult& trial : block) add(trial);
   cell_.outcomes.push_back(outcomes_of(block));
-  cell_.maps.push_back(
-      {.successes = cell_.outcomes.back().successes(), .trials = static_cast<int>(block.size())});
 }
 
 void CellTally::finish() {

@@ -14,12 +14,12 @@ namespace vernier::sim::internal {
 /// be kept: 24 bytes a trial are, until the end, for the quantiles.
 class CellTally {
  public:
-  /// Keeps a reference to a cell without trials.
+  /// Keeps a reference to the cell.
   explicit CellTally(CellResult& cell) : cell_(cell) {}
 
   /// The trials of a block, ascending; blocks ascend too. None: a block that is left out.
   void add(std::span<const TrialResult> block);
-  /// Fills in CellResult::summary.
+  /// Fills in the rest of CellResult::summary, by CellResult::maps too.
   void finish();
 
  private:

@@ -156,7 +156,8 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
 /// StudyFile::cells.
 using BlockVisitor = std::function<void(std::size_t cell, const std::vector<TrialResult>& trials)>;
 
-/// The same without trials, which are given to `visit` instead.
+/// Counts of the maps only: CellResult has neither trials, which are given to `visit` instead, nor
+/// figures.
 StudyResults visit_results(const Study& study,
                            const std::filesystem::path& folder,
                            const BlockVisitor& visit);

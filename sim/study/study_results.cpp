@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/cell_tally.h"
@@ -72,11 +73,18 @@ std::vector<TrialResult> wanted_trials(StoredBlock block,
   return std::move(block.trials);
 }
 
-}  // namespace
+enum class Figures { made, left_out };
 
-StudyResults visit_results(const Study& study,
-                           const std::filesystem::path& folder,
-                           const BlockVisitor& visit) {
+ClusterCount count_of(const std::vector<TrialResult>& trials) {
+  const auto successes =
+      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return t.success(); });
+  return {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())};
+}
+
+StudyResults visit_blocks(const Study& study,
+                          const std::filesystem::path& folder,
+                          Figures figures,
+                          const BlockVisitor& visit) {
   StoredResults stored;
   stored.add_folder(folder);
   stored.require_all_read();
@@ -89,7 +97,8 @@ StudyResults visit_results(const Study& study,
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const auto source = static_cast<std::size_t>(work.same_as[cell]);
     const int wanted = results.cells[cell].budget.wanted;  // fewer: a cell that has stopped
-    CellTally tally(results.cells[cell]);
+    CellResult& result = results.cells[cell];
+    CellTally tally(result);
     for (int from = 0; from < wanted; from += at_a_time) {
       const int end = std::min(from + at_a_time, wanted);
       for (StoredBlock& block : stored.read({work.cell_keys[cell], from, end})) {
@@ -97,21 +106,30 @@ StudyResults visit_results(const Study& study,
         if (static_cast<int>(block.trials.size()) < job.count) continue;
         const std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
         if (source == cell) ++results.blocks_done;
-        tally.add(trials);
+        result.maps.push_back(count_of(trials));
+        if (figures == Figures::made) tally.add(trials);
         visit(cell, trials);
       }
     }
-    tally.finish();
+    if (figures == Figures::made) tally.finish();
   }
   return results;
+}
+
+}  // namespace
+
+StudyResults visit_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           const BlockVisitor& visit) {
+  return visit_blocks(study, folder, Figures::left_out, visit);
 }
 
 StudyResults study_results(const Study& study,
                            const std::filesystem::path& folder,
                            std::size_t kept_of_a_cell) {
   std::vector<std::vector<TrialResult>> kept(study.file.cells.size());
-  StudyResults results =
-      visit_results(study, folder, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
+  StudyResults results = visit_blocks(
+      study, folder, Figures::made, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
         const std::size_t room = kept_of_a_cell - kept[cell].size();
         kept[cell].insert(
             kept[cell].end(), trials.begin(),

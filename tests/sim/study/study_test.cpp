@@ -380,7 +380,11 @@ CellResult cell_of(const std::vector<TrialResult>& trials, int trials_per_map) {
   CellTally tally(cell);
   const auto step = static_cast<std::size_t>(trials_per_map);
   for (std::size_t at = 0; at < trials.size(); at += step) {
-    tally.add(std::span(trials).subspan(at, step));
+    const auto block = std::span(trials).subspan(at, step);
+    tally.add(block);
+    cell.maps.push_back({.successes = static_cast<int>(std::count_if(
+                             block.begin(), block.end(), [](auto& t) { return t.success(); })),
+                         .trials = trials_per_map});
   }
   tally.finish();
   return cell;

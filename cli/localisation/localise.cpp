@@ -120,8 +120,8 @@ void check(const LocaliseArguments& options, const CLI::App& verb) {
   }
   if (options.output.empty()) return;
   check_output_is_not_input({options.map}, options.output);
-  for (const std::string& input :
-       {options.views.features, options.views.poses, options.views.rig, options.views.world}) {
+  for (const std::string& input : {options.views.features, options.views.poses, options.views.rig,
+                                   options.views.world, options.views.sources.file}) {
     if (!input.empty()) check_output_is_not_input({input}, options.output);
   }
 }

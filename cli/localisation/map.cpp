@@ -148,11 +148,9 @@ void make(const MakeMapOptions& options, const CLI::App& verb, Session& session)
     report(options.extend, session);
     return;
   }
-  if (!options.views.features.empty()) {
-    check_output_is_not_input({options.views.features}, options.output);
-  }
-  if (!options.views.poses.empty()) {
-    check_output_is_not_input({options.views.poses}, options.output);
+  for (const std::string& input :
+       {options.views.features, options.views.poses, options.views.sources.file}) {
+    if (!input.empty()) check_output_is_not_input({input}, options.output);
   }
   write_map(options.output, recorded_map(options, session));
   report(options.output, session);

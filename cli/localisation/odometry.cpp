@@ -22,6 +22,7 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
+#include "cli/simulation/source_options.h"
 #include "localise/trajectory.h"
 
 namespace vernier::cli {
@@ -168,7 +169,7 @@ void report(const DriveFigures& figures, const OdometryOptions& options, Session
   session.result(json, text);
 }
 
-void check(const OdometryOptions& options, const CLI::App& verb) {
+void check_options(const OdometryOptions& options, const CLI::App& verb) {
   const bool images = !options.left.empty() || !options.right.empty();
   if (images == !options.world.empty()) {
     throw Error("odometry", images ? "images and a world are given" : "no views are given",
@@ -180,7 +181,7 @@ void check(const OdometryOptions& options, const CLI::App& verb) {
   if (images && options.rig.empty()) {
     throw Error("odometry", "images need the rig that took them", "give --rig");
   }
-  constexpr std::array of_robot{"--drives", "--leg",      "--step-m",    "--turn-deg",
+  constexpr std::array of_robot{"--drives", "--leg",      "--step-m",    "--turn-deg", "--sources",
                                 "--source", "--height-m", "--pitch-deg", "--seed"};
   constexpr std::array of_images{"--truth", "--rate-hz", "--corners"};
   if (images) refuse_options(verb, of_robot, "no robot is simulated");
@@ -188,13 +189,13 @@ void check(const OdometryOptions& options, const CLI::App& verb) {
   if (options.drives > 1 && !options.output.empty()) {
     throw Error("--output", "several drives have several trajectories", "use --drives 1");
   }
-  if (!options.output.empty() && !options.truth.empty()) {
-    check_output_is_not_input({options.truth}, options.output);
+  if (!options.output.empty()) {
+    check_output_is_not_input({options.truth, options.sources.file}, options.output);
   }
 }
 
 void run(const OdometryOptions& options, const CLI::App& verb, Session& session) {
-  check(options, verb);
+  check_options(options, verb);
   DriveFigures figures;
   OdometryPath path;
   const auto add = [&](const OdometryDrive& drive) {
@@ -263,9 +264,7 @@ void add_odometry(CLI::App& app, Session& session) {
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
-  verb->add_option("--source", o->sources,
-                   "setting of an error source of the simulated robot, such as corner_loss=0.3, or "
-                   "none (repeatable)");
+  add_source_options(*verb, o->sources);
   verb->add_option("--seed", o->seed, "random seed of the simulated robot")->capture_default_str();
   verb->add_option("-o,--output", o->output, "trajectory, TUM format, as evo reads it");
   check_files_written(*verb, {"--output"});

@@ -113,7 +113,7 @@ void for_each_simulated_drive(const OdometryOptions& options,
   const RigEstimate rig =
       read_stereo_rig(options.rig.empty() ? "nominal" : options.rig, session).estimate;
   ExperimentSettings settings;
-  settings.sources = sources_of(options.sources, SourceSettings());
+  settings.sources = sources_of(options.sources);
   settings.mount = {options.height_m, options.pitch_deg * degree};
   settings.sources.moved = 0;  // there is no map
   settings.seed = options.seed;

@@ -12,6 +12,7 @@
 #include "calib/rig.h"
 #include "cli/program/namespaces.h"
 #include "cli/program/session.h"
+#include "cli/simulation/source_options.h"
 #include "localise/place.h"
 
 namespace vernier::cli {
@@ -23,7 +24,7 @@ struct OdometryOptions {
   // simulated robot
   int drives = 1, leg = 0;
   double step_m = 0.25, turn_deg = 5, height_m = 1.2, pitch_deg = 0;
-  std::vector<std::string> sources;
+  SourceOptions sources;
   std::uint64_t seed = 1;
 };
 

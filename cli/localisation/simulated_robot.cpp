@@ -56,7 +56,7 @@ SimulatedRobot::SimulatedRobot(const ViewOptions& options,
       visibility_(world_),
       settings_(std::move(settings)) {
   settings_.mount = options.mount();
-  settings_.sources = sources_of(options.sources, SourceSettings());
+  settings_.sources = sources_of(options.sources);
   settings_.seed = options.seed;
   settings_.localiser.corners = settings_.localiser.corners || options.corners;
   rig_ = rig_of_robot(options.rig_or_default(), settings_.sources.calibration > 0, session);

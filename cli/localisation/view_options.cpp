@@ -20,6 +20,7 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/simulation/source_options.h"
 #include "localise/pair_view.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
@@ -103,9 +104,7 @@ void add_view_options(CLI::App& verb, ViewOptions& o) {
   verb.add_option("--max-disparity", o.max_disparity_px,
                   "largest disparity to search in images, px (default: a quarter of the width)")
       ->check(CLI::Range(1, 100'000));
-  verb.add_option("--source", o.sources,
-                  "setting of an error source of the simulated robot, such as edge_loss=0.2, or "
-                  "none (repeatable)");
+  add_source_options(verb, o.sources);
   verb.add_flag("--corners", o.corners,
                 "views hold corners, for methods on points (which see to it themselves)");
   verb.add_option("--seed", o.seed, "random seed of the simulated robot")->capture_default_str();
@@ -137,7 +136,7 @@ void check(const ViewOptions& options, const CLI::App& verb) {
     throw Error(place_of(verb), "images need the rig that took them", "give --rig");
   }
   constexpr std::array of_images{"--poses", "--max-disparity"};
-  constexpr std::array of_robot{"--source", "--seed"};
+  constexpr std::array of_robot{"--sources", "--source", "--seed"};
   constexpr std::array of_camera{"--height-m", "--pitch-deg"};
   if (!images) refuse_options(verb, of_images, "there are no images");
   if (options.world.empty()) refuse_options(verb, of_robot, "no robot is simulated");

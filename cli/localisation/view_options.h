@@ -7,6 +7,7 @@
 
 #include "cli/program/cli11_fwd.h"
 #include "cli/program/session.h"
+#include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
 
@@ -17,7 +18,7 @@ struct ViewOptions {
   std::string world, features, left, right, poses, rig;
   double height_m = 1.2, pitch_deg = 0;
   int max_disparity_px = 0;
-  std::vector<std::string> sources;
+  SourceOptions sources;  ///< of a simulated robot
   std::uint64_t seed = 1;
   bool corners = false;  ///< of a simulated robot or images: views hold corners
 

@@ -179,8 +179,9 @@ void run(const DriveArguments& options, Session& session) {
   }
   for (const std::string* file :
        {&options.output, &options.truth, &options.odometry, &options.plan}) {
-    check_output_is_not_input(
-        {options.commands, find_world(options.robot.world), find_rig(options.robot.rig)}, *file);
+    check_output_is_not_input({options.commands, options.robot.sources.file,
+                               find_world(options.robot.world), find_rig(options.robot.rig)},
+                              *file);
   }
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   const RobotStage stage(options.robot, session);

@@ -64,7 +64,7 @@ void apply(const std::vector<std::string>& words, RobotOptions& options) {
 RobotOptions options_of(const RobotArguments& arguments) {
   RobotOptions options;
   options.mount = {arguments.height_m, arguments.pitch_deg * std::numbers::pi / 180};
-  options.sources = sources_of(arguments.sources, SourceSettings());
+  options.sources = sources_of(arguments.sources);
   apply(arguments.robot, options);
   return options;
 }
@@ -101,8 +101,7 @@ void add_robot_options(CLI::App& verb, RobotArguments& o) {
   verb.add_option("--pitch-deg", o.pitch_deg, "camera pitch, degrees; positive is down")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
-  verb.add_option("--source", o.sources,
-                  "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+  add_source_options(verb, o.sources);
   verb.add_option("--robot", o.robot,
                   "setting of the robot, such as max_speed_mps=0.5 or wheel_sd=0.01, or exact: "
                   "without errors of odometry (repeatable)");

@@ -9,6 +9,7 @@
 #include "calib/rig_estimate.h"
 #include "cli/program/cli11_fwd.h"
 #include "cli/program/session.h"
+#include "cli/simulation/source_options.h"
 #include "sim/robot.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -19,7 +20,8 @@ namespace vernier::cli {
 struct RobotArguments {
   std::string world = "workshop", rig = "nominal";
   double height_m = 1.2, pitch_deg = 0;
-  std::vector<std::string> sources, robot;
+  SourceOptions sources;
+  std::vector<std::string> robot;
   std::uint64_t seed = 1;
 };
 

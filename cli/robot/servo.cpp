@@ -155,8 +155,9 @@ void run(const ServoArguments& options, Session& session) {
   servo.goal =
       vernier::internal::with_errors_of("--goal", [&] { return servo_goal(options.goal); });
   for (const std::string* file : {&options.output, &options.plan}) {
-    check_output_is_not_input({find_world(options.robot.world), find_rig(options.robot.rig)},
-                              *file);
+    check_output_is_not_input(
+        {options.robot.sources.file, find_world(options.robot.world), find_rig(options.robot.rig)},
+        *file);
   }
   constexpr std::uint64_t most_trials = std::uint64_t{1} << 31U;  // the others are those of maps
   if (std::uint64_t{options.first} + static_cast<std::uint64_t>(options.trials) > most_trials) {

@@ -53,21 +53,9 @@ struct SimulateArguments {
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
   std::uint32_t trial = 0;
-  std::string sources_file;
-  std::vector<std::string> sources;
+  SourceOptions sources;
   SimulatedViewOptions views;
 };
-
-/// Those of --sources, then of --source.
-SourceSettings simulated_sources(const SimulateArguments& options, SourceSettings settings) {
-  if (!options.sources_file.empty()) {
-    if (!options.sources.empty() && options.sources.front() == "none") {
-      throw Error("--source none", "would override --sources", "leave one out");
-    }
-    read_sources_file(options.sources_file, settings);
-  }
-  return sources_of(options.sources, settings);
-}
 
 /// A camera stands above the floor; the origin of a file of poses may lie anywhere.
 void check_height(const SimulateArguments& options) {
@@ -101,7 +89,7 @@ void run_views(const SimulateArguments& options, Session& session) {
   SourceSettings initial;
   initial.calibration = 0;
   initial.epipolar_reject_deg = 0;  // depths are known along rows too
-  const SourceSettings sources = simulated_sources(options, initial);
+  const SourceSettings sources = sources_of(options.sources, initial);
   if (sources.calibration > 0) {
     throw Error("source calibration", "is given for a camera with depth maps, which has no pair",
                 "leave it out; --depth-sigma-per-m2 is the error of its depths");
@@ -115,7 +103,7 @@ void run_views(const SimulateArguments& options, Session& session) {
   });
   SimulatedViewOptions views = options.views;
   for (const std::string* output : {&views.output, &views.segments}) {
-    if (!output->empty()) check_output_is_not_input({options.sources_file}, *output);
+    if (!output->empty()) check_output_is_not_input({options.sources.file}, *output);
   }
   views.at.height_m = options.height_m;
   simulate_views(visibility, file, options.rig, sources,
@@ -134,7 +122,7 @@ void run(const SimulateArguments& options, const CLI::App& verb, Session& sessio
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   SourceSettings initial;
   initial.calibration = 0;
-  const SourceSettings sources = simulated_sources(options, initial);
+  const SourceSettings sources = sources_of(options.sources, initial);
   const std::filesystem::path file = find_world(options.world);
   World world = with_errors_of(file.string(), [&] { return build_world(read_world(file)); });
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
@@ -233,10 +221,7 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(finite)
       ->capture_default_str();
-  verb->add_option("--sources", o->sources_file,
-                   "file with a table [sources], as characterise writes it; --source comes after");
-  verb->add_option("--source", o->sources,
-                   "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+  add_source_options(*verb, o->sources);
   verb->add_option(
       "--picture", o->picture,
       "SVG or PNG of both images: edges as they are, as sensed, as the estimator places "

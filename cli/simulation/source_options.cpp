@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/source_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <set>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "cli/program/session.h"
 #include "sim/sources.h"
+#include "sim/study/settings_reader.h"
 
 namespace vernier::cli {
 namespace {
@@ -36,9 +41,8 @@ void check_effect(const SourceSettings& settings, const std::set<std::string_vie
   refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
 }
 
-}  // namespace
-
-SourceSettings sources_of(const std::vector<std::string>& words, SourceSettings settings) {
+/// Those of --source.
+SourceSettings with_words(const std::vector<std::string>& words, SourceSettings settings) {
   std::set<std::string_view> given;
   for (const std::string& word : words) {
     if (word == "none") {
@@ -71,6 +75,25 @@ SourceSettings sources_of(const std::vector<std::string>& words, SourceSettings 
   check(settings, "--source");
   check_effect(settings, given);
   return settings;
+}
+
+}  // namespace
+
+void add_source_options(CLI::App& verb, SourceOptions& options) {
+  verb.add_option("--sources", options.file,
+                  "file with a table [sources], as characterise writes it; --source comes after");
+  verb.add_option("--source", options.words,
+                  "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+}
+
+SourceSettings sources_of(const SourceOptions& options, SourceSettings settings) {
+  if (!options.file.empty()) {
+    if (!options.words.empty() && options.words.front() == "none") {
+      throw Error("--source none", "would override --sources", "leave one out");
+    }
+    read_sources_file(options.file, settings);
+  }
+  return with_words(options.words, std::move(settings));
 }
 
 }  // namespace vernier::cli

@@ -23,6 +23,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/page.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
@@ -45,7 +46,7 @@ namespace {
 
 struct ViewArguments {
   std::string world, rig = "nominal", output;
-  std::vector<std::string> sources;
+  SourceOptions sources;
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
   int poses = 60;
@@ -167,8 +168,9 @@ std::filesystem::path page_folder() {
 void run(const ViewArguments& options, Session& session) {
   const std::filesystem::path folder = page_folder();
   const std::filesystem::path file = find_world(options.world);
+  check_output_is_not_input({file, options.sources.file}, options.output);
   World world = build_world(read_world(file));
-  const SourceSettings sources = sources_of(options.sources, {});
+  const SourceSettings sources = sources_of(options.sources);
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
   const ReadRig rig = read_named_rig(options.rig, session);
   const Rig& true_rig = rig.estimate.rig;
@@ -241,8 +243,7 @@ void add_world_view(CLI::App& world, Session& session) {
   verb->add_option("--poses", o->poses, "along the route, evenly")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  verb->add_option("--source", o->sources,
-                   "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+  add_source_options(*verb, o->sources);
   verb->add_option("--height-m", o->height_m, "camera height, metres")
       ->check(finite_and_positive)
       ->capture_default_str();

@@ -68,6 +68,34 @@ class SimulatedViews(verb_calls.ProgramCase):
             for line in look['lines']:
                 self.assertGreater(line['a_m'][2], -0.01)  # nothing below the floor
 
+    def test_every_verb_that_simulates_takes_a_file_of_sources(self):
+        (self.folder / 'sources.toml').write_text('[sources]\nedge_loss = 0.4\ncorner_sigma_px = 0.3\n')
+        (self.folder / 'commands.csv').write_text('speed_mps,turn_radps,duration_s\n0.5,0,1\n')
+        words = ['--source', 'edge_loss=0.4', '--source', 'corner_sigma_px=0.3']
+        verbs = {
+            'drive': ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o'],
+            'servo': ['servo', '--trials', '1', '--threads', '1', '-o'],
+            'odometry': ['odometry', '--world', 'workshop', '--leg', '2', '-o'],
+            'map make': ['map', 'make', '--world', 'workshop', '--spacing-m', '6', '-o'],
+            'world view': ['world', 'view', 'workshop', '--poses', '2', '-o'],
+        }
+        for name, call in verbs.items():
+            with self.subTest(verb=name):
+                made = []
+                for number, given in enumerate(([], ['--sources', 'sources.toml'], words)):
+                    output = f'{number}.html' if name == 'world view' else str(number)
+                    self.done(*call, output, *given)
+                    made.append((self.folder / output).read_bytes())
+                    (self.folder / output).unlink()
+                self.assertEqual(made[1], made[2])
+                self.assertNotEqual(made[0], made[1])
+                self.refused(*call, 'out', '--sources', 'none.toml', says='none.toml: cannot be read')
+                before = (self.folder / 'sources.toml').read_bytes()
+                self.refused(*call, 'sources.toml', '--sources', 'sources.toml', says='is an input')
+                self.assertEqual((self.folder / 'sources.toml').read_bytes(), before)
+        self.refused('localise', 'none.map', '--features', 'a.jsonl', '--sources', 'sources.toml',
+                     says='no robot is simulated')
+
     def test_sources_are_read_from_a_file_as_a_study_does(self):
         file = self.folder / 'sources.toml'
         file.write_text('[sources]\nedge_loss = 0.3\nmissed = 0.2\n')

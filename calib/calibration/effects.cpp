@@ -117,17 +117,10 @@ EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& opt
   test.not_tested = reason_not_to_test(usual, options);
   if (!test.not_tested.empty()) return test;
   const NoiseParts all{.motion = usual.rig.cameras.size() > 1, .shape = true};
-  const double spacing_m = point_spacing_m(usual.evidence->observations.target_m);
-  const NoiseFit fit = fit_corner_noise(noise_likelihood(usual, all), spacing_m);
-  const auto without = [&](bool NoiseParts::*part) {
-    NoiseParts fewer = fit.parts;
-    fewer.*part = false;
-    return fit_corner_noise(noise_likelihood(usual, fewer), spacing_m, fit.noise)
-        .solution.minus_two_log;
-  };
-  const double minus_two_log = fit.solution.minus_two_log;
-  test.shape = shape_test(minus_two_log, without(&NoiseParts::shape));
-  if (fit.parts.motion) test.motion = motion_test(minus_two_log, without(&NoiseParts::motion));
+  const CornerNoiseEstimate found =
+      estimate_corner_noise(usual, all, {.field = false, .shape = true});
+  test.shape = found.shape;
+  test.motion = found.motion;
   return test;
 }
 

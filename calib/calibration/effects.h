@@ -9,7 +9,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
-#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/component_tests.h"
 #include "calib/rig_estimate.h"
 #include "calib/solver/linearised_cost.h"
 #include "calib/solver/reprojection_problem.h"
@@ -33,7 +33,7 @@ void move_to_effects(const CalibrationOptions& options,
                      CalibrationSummary& summary);
 
 /// Whether a calibration's corners show the shape of the board, and its motion between exposures:
-/// likelihood ratio tests at 1 % (calib/noise/fit_corner_noise.h) of the restricted likelihood with
+/// likelihood ratio tests at 1 % (calib/noise/component_tests.h) of the restricted likelihood with
 /// white noise, a smooth field, shape and motion. Of a board that is flat and stands still, 1 % of
 /// the calibrations find either.
 struct EffectsTest {

@@ -10,7 +10,6 @@
 #include "calib/error.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/restricted_likelihood.h"
-#include "calib/statistics/distributions.h"
 
 namespace vernier::internal {
 namespace {
@@ -125,13 +124,6 @@ NoiseFit fit_from(const RestrictedLikelihood& likelihood,
   return fit;
 }
 
-/// Two variances, each on the edge of its range.
-ComponentTest two_variances_test(double minus_two_log, double minus_two_log_without) {
-  const double ratio = std::max(0.0, minus_two_log_without - minus_two_log);
-  if (!(ratio > 0)) return {};
-  return {ratio, 0.5 * chi_squared_survival(ratio, 1) + 0.25 * chi_squared_survival(ratio, 2)};
-}
-
 }  // namespace
 
 CornerNoise usual_start(const RestrictedLikelihood& likelihood,
@@ -168,20 +160,6 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
   }
   best.solution = likelihood.at(best.noise, RestrictedLikelihood::Want::solution);
   return best;
-}
-
-ComponentTest motion_test(double minus_two_log, double minus_two_log_without) {
-  return two_variances_test(minus_two_log, minus_two_log_without);
-}
-
-ComponentTest shape_test(double minus_two_log, double minus_two_log_without) {
-  return two_variances_test(minus_two_log, minus_two_log_without);
-}
-
-ComponentTest field_test(double minus_two_log, double minus_two_log_without) {
-  const double ratio = std::max(0.0, minus_two_log_without - minus_two_log);
-  if (!(ratio > 0)) return {};
-  return {ratio, 0.5 * chi_squared_survival(ratio, 1) + 0.5 * chi_squared_survival(ratio, 2)};
 }
 
 }  // namespace vernier::internal

@@ -36,21 +36,4 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           const std::optional<CornerNoise>& start = {},
                           double least_gain = 1e-4);
 
-/// The test that a group of components is absent, by twice the ratio of restricted likelihoods. On
-/// the boundary of the parameters it is, for white noise alone, at most as large as a mixture of
-/// chi-squared variables (Self and Liang 1987; Stram and Lee 1994):
-///
-///     motion   ¼ χ²_0 + ½ χ²_1 + ¼ χ²_2
-///     shape    the same
-///     field    ½ χ²_1 + ½ χ²_2     (ℓ has no meaning without a field, so this is an approximation
-///                                   to the largest over ℓ: Davies 1987)
-struct ComponentTest {
-  double ratio = 0;  ///< 2 (l − l_without), not below 0
-  double p_value = 1;
-};
-
-ComponentTest motion_test(double minus_two_log, double minus_two_log_without);
-ComponentTest shape_test(double minus_two_log, double minus_two_log_without);
-ComponentTest field_test(double minus_two_log, double minus_two_log_without);
-
 }  // namespace vernier::internal

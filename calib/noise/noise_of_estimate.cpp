@@ -10,6 +10,7 @@
 #include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/frame_rows.h"
@@ -71,22 +72,12 @@ std::vector<FrameMotion> CornerNoiseEstimate::moved() const {
 
 CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
                                           NoiseParts parts,
-                                          bool tests) {
-  const RestrictedLikelihood likelihood = noise_likelihood(estimate, parts);
-  const double spacing_m = point_spacing_m(estimate.evidence->observations.target_m);
-  CornerNoiseEstimate result{fit_corner_noise(likelihood, spacing_m), {}, {}, {}};
-  if (!tests) return result;
-  const auto without = [&](bool NoiseParts::*part) {
-    NoiseParts fewer = likelihood.parts();
-    fewer.*part = false;
-    return fit_corner_noise(noise_likelihood(estimate, fewer), spacing_m, result.fit.noise)
-        .solution.minus_two_log;
+                                          NoiseParts tested) {
+  const LikelihoodOf likelihood_of = [&](NoiseParts fewer) {
+    return noise_likelihood(estimate, fewer);
   };
-  const double all = result.fit.solution.minus_two_log;
-  if (likelihood.parts().motion) result.motion = motion_test(all, without(&NoiseParts::motion));
-  if (likelihood.parts().field) result.field = field_test(all, without(&NoiseParts::field));
-  if (likelihood.parts().shape) result.shape = shape_test(all, without(&NoiseParts::shape));
-  return result;
+  const double spacing_m = point_spacing_m(estimate.evidence->observations.target_m);
+  return {fit_and_test(likelihood_of, parts, tested, spacing_m)};
 }
 
 }  // namespace vernier::internal

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
-#include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/restricted_likelihood.h"
 #include "calib/rig_estimate.h"
 
@@ -18,22 +17,18 @@ namespace vernier::internal {
 /// Error if the estimate has no evidence.
 RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts);
 
-/// The components of a calibration's corner noise, and whether each is there.
-struct CornerNoiseEstimate {
-  NoiseFit fit;                         ///< with all parts asked for
-  std::optional<ComponentTest> motion;  ///< nothing where it was not fitted
-  std::optional<ComponentTest> field;
-  std::optional<ComponentTest> shape;
-
+/// The components of a calibration's corner noise, and whether each is there: nothing where a part
+/// was not fitted, or not tested.
+struct CornerNoiseEstimate : TestedNoise {
   /// The frames and cameras whose motion stands out: each at 1 % over their number (Bonferroni), so
   /// that none of a set in which nothing moves is named in 99 % of such sets. Empty unless
   /// motions as a whole are there at 1 %.
   std::vector<FrameMotion> moved() const;
 };
 
-/// `tests` also fits without each part, which takes as long again.
+/// Each part that is in `tested` too is also fitted without, which takes as long again.
 CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
                                           NoiseParts parts,
-                                          bool tests = true);
+                                          NoiseParts tested = {.shape = true});
 
 }  // namespace vernier::internal

@@ -94,8 +94,9 @@ class SplitOfBoards {
   void add(const RigEstimate& estimate,
            const std::vector<int>& frames,
            HeldOutBoardsResult& result) {
+    const NoiseParts parts{.motion = stand_ == BoardStand::hand_held};
     const CornerNoiseEstimate noise =
-        estimate_corner_noise(estimate, {.motion = stand_ == BoardStand::hand_held}, false);
+        estimate_corner_noise(estimate, parts, {.field = false, .motion = false});
     result.noise_not_found += !noise.fit.converged;
     ++result.splits;
     for (const int frame : frames) {

@@ -10,7 +10,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibration/effects.h"
-#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/component_tests.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/validation/model_comparison.h"

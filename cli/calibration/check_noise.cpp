@@ -60,6 +60,10 @@ std::string noise_text(const CornerNoiseEstimate& found, const Rig& rig) {
       "  {:.3f} px smooth over {:.0f} mm of the board ({})\n",
       noise.white_px, noise.field_px, 1e3 * noise.field_length_m, p_text(*found.field));
   if (!found.motion) return text;
+  if (!(found.motion->ratio > 0)) {
+    return text +
+           fmt::format("  no motion of the board between exposures ({})\n", p_text(*found.motion));
+  }
   text += fmt::format(
       "  {:.2f} mm and {:.2f} mrad, each axis, of motion of the board between exposures ({})\n",
       1e3 * noise.motion_m, 1e3 * noise.motion_rad, p_text(*found.motion));

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/component_tests.h"
 #include "cli/program/namespaces.h"
 #include "cli/program/session.h"
 

@@ -29,6 +29,7 @@ struct CalibrationOptions {
   /// motion between the exposures of the cameras. With either, errors that are smooth over the
   /// board too.
   bool board_shape = false, motion = false;
+  bool baseline_motion = false;  ///< the motion along the baseline has a size of its own
   /// The corner noise is known to be white (simulated corners): use the bound as covariance.
   bool white_noise = false;
 };

@@ -41,6 +41,7 @@ struct CalibrationEffects {
   double field_length_m = 0;             ///< over this length
   double motion_rad = 0;                 ///< of the board between exposures, about each axis
   double motion_m = 0;                   ///< along each axis
+  double motion_baseline_m = 0;          ///< along the baseline where it is not motion_m, else 0
   double shape_plane_m = 0;              ///< of the board's corners along its x and y
   double shape_height_m = 0;             ///< along z
   std::vector<Eigen::Vector3d> shape_m;  ///< found, one per point of the target; empty without

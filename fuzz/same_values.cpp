@@ -141,6 +141,7 @@ void require_same(const RigEstimate& a, const RigEstimate& b) {
     require(s.effects.has_value() == t.effects.has_value() &&
                 (!s.effects || (same(s.effects->white_px, t.effects->white_px) &&
                                 same(s.effects->motion_m, t.effects->motion_m) &&
+                                same(s.effects->motion_baseline_m, t.effects->motion_baseline_m) &&
                                 same(s.effects->shape_height_m, t.effects->shape_height_m) &&
                                 s.effects->shape_m.size() == t.effects->shape_m.size())),
             "random effects are kept");

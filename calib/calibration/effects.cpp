@@ -38,9 +38,9 @@ constexpr const char* no_minimum =
 CalibrationEffects effects_of(const EffectsMinimum& minimum,
                               const std::vector<Eigen::Vector3d>& target_m) {
   const CornerNoise& noise = minimum.noise.noise;
-  CalibrationEffects effects{
-      noise.white_px, noise.field_px,      noise.field_length_m, noise.motion_rad,
-      noise.motion_m, noise.shape_plane_m, noise.shape_height_m, {}};
+  CalibrationEffects effects{noise.white_px,      noise.field_px,       noise.field_length_m,
+                             noise.motion_rad,    noise.motion_m,       noise.motion_baseline_m,
+                             noise.shape_plane_m, noise.shape_height_m, {}};
   if (minimum.shape_m.size() == 0) return effects;
   const std::vector<Eigen::Vector3d> warped = warped_target(target_m, minimum.state.warp_m);
   for (std::size_t i = 0; i < target_m.size(); ++i) {
@@ -100,7 +100,9 @@ void move_to_effects(const CalibrationOptions& options,
                      CalibrationSummary& summary) {
   const EffectsMinimum minimum =
       minimise_with_effects(observations, state, problem.held, problem.priors,
-                            {.motion = options.motion, .shape = options.board_shape});
+                            {.motion = options.motion,
+                             .shape = options.board_shape,
+                             .baseline_motion = options.motion && options.baseline_motion});
   state = minimum.state;
   cost.free = minimum.free;
   cost.equations = minimum.equations;
@@ -116,11 +118,14 @@ EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& opt
   EffectsTest test;
   test.not_tested = reason_not_to_test(usual, options);
   if (!test.not_tested.empty()) return test;
-  const NoiseParts all{.motion = usual.rig.cameras.size() > 1, .shape = true};
+  const bool moves = usual.rig.cameras.size() > 1;
+  const NoiseParts all{.motion = moves, .shape = true, .baseline_motion = moves};
   const CornerNoiseEstimate found =
       estimate_corner_noise(usual, all, {.field = false, .shape = true});
   test.shape = found.shape;
   test.motion = found.motion;
+  test.isotropy = found.isotropy;
+  test.along_baseline = found.is_along_baseline();
   return test;
 }
 
@@ -138,6 +143,7 @@ RigEstimate with_found_effects(RigEstimate usual,
     test = test_effects(usual, options);
     options.board_shape = test.has_shape();
     options.motion = test.has_motion();
+    options.baseline_motion = options.motion && test.along_baseline;
     if (!has_effects(options)) return usual;
     RigEstimate estimate = calibrate(observations, options);
     for (const std::string& doubt : estimate.calibration->trust_warnings) {

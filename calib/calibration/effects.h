@@ -37,9 +37,11 @@ void move_to_effects(const CalibrationOptions& options,
 /// white noise, a smooth field, shape and motion. Of a board that is flat and stands still, 1 % of
 /// the calibrations find either.
 struct EffectsTest {
-  std::optional<ComponentTest> shape;   ///< nothing where it was not tested
-  std::optional<ComponentTest> motion;  ///< the same; one camera sees none
-  std::string not_tested;               ///< why neither was; empty if they were
+  std::optional<ComponentTest> shape;     ///< nothing where it was not tested
+  std::optional<ComponentTest> motion;    ///< the same; one camera sees none
+  std::optional<ComponentTest> isotropy;  ///< of the motion; the same
+  bool along_baseline = false;            ///< isotropy is rejected
+  std::string not_tested;                 ///< why neither was; empty if they were
 
   bool has_shape() const;
   bool has_motion() const;

@@ -51,6 +51,7 @@ CalibrationOptions options_to_solve_again(const RigEstimate& estimate) {
     options.warp = BoardWarp::known;  // a shape contains it
     options.board_shape = !summary.effects->shape_m.empty();
     options.motion = summary.effects->motion_m > 0;
+    options.baseline_motion = summary.effects->motion_baseline_m > 0;
   }
   options.reject_outliers = false;
   options.check_input = false;

@@ -112,10 +112,15 @@ constexpr std::array<EffectKey, 7> effect_keys{
      {"shape_plane_m", &CalibrationEffects::shape_plane_m},
      {"shape_height_m", &CalibrationEffects::shape_height_m}}};
 
+constexpr const char* baseline_key = "motion_baseline_m";
+
 CalibrationEffects parse_effects(const Node& node) {
   CalibrationEffects effects;
   for (const auto& [key, member] : effect_keys)
     effects.*member = not_negative(node.at(key), most_value);
+  if (node.has(baseline_key)) {  // not in older files, nor where the motion is isotropic
+    effects.motion_baseline_m = not_negative(node.at(baseline_key), most_value);
+  }
   if (!(effects.white_px > 0)) throw Error(node.at("white_px").place(), "is not above 0", remedy);
   const bool has_shape = effects.shape_plane_m > 0 || effects.shape_height_m > 0;
   if (has_shape != node.has("shape_m")) {
@@ -138,6 +143,7 @@ CalibrationEffects parse_effects(const Node& node) {
 Json effects_json(const CalibrationEffects& effects) {
   Json json;
   for (const auto& [key, member] : effect_keys) json[key] = effects.*member;
+  if (effects.motion_baseline_m > 0) json[baseline_key] = effects.motion_baseline_m;
   if (effects.shape_m.empty()) return json;
   json["shape_m"] = Json::array();
   for (const Eigen::Vector3d& s : effects.shape_m) {

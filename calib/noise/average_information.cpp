@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index components = 7, of_field = 3, motion_at = 3, shape_at = 5;
+constexpr Index components = 8, of_field = 3, motion_at = 3, of_motion = 3, shape_at = 6;
 
 /// Products of the q of all components with W: Yᵀ W q of a frame, Dᵀ W q and qᵀ W q of all frames.
 struct WeightedProducts {
@@ -65,12 +65,18 @@ void add_field(const LinearView& view,
   }
 }
 
-/// −2 û of the effects in two groups, one column each: of every `period`, `in_first` are of the
-/// first group.
-MatrixXd in_two_groups(const VectorXd& effects, Index period, Index in_first) {
-  MatrixXd groups = MatrixXd::Zero(effects.size(), 2);
-  for (Index i = 0; i < effects.size(); ++i) {
-    groups(i, i % period < in_first ? 0 : 1) = -2 * effects[i];
+/// −2 û of the shape in two groups, one column each: in the plane and in height.
+MatrixXd shape_in_groups(const VectorXd& shape_m) {
+  MatrixXd groups = MatrixXd::Zero(shape_m.size(), 2);
+  for (Index i = 0; i < shape_m.size(); ++i) groups(i, i % 3 < 2 ? 0 : 1) = -2 * shape_m[i];
+  return groups;
+}
+
+/// −2 û of a frame's motion in three groups: turning, across the baseline and along it.
+MatrixXd motion_in_groups(const VectorXd& motion) {
+  MatrixXd groups = MatrixXd::Zero(motion.size(), of_motion);
+  for (Index i = 0; i < motion.size(); ++i) {
+    groups(i, i % 6 < 3 ? 0 : i % 6 == 3 ? 2 : 1) = -2 * motion[i];
   }
   return groups;
 }
@@ -87,7 +93,7 @@ MatrixXd shape_with_shape(const LinearFrames& linear, const std::vector<FieldCov
 
 }  // namespace
 
-Eigen::Matrix<double, 7, 7> average_information(const LinearFrames& linear,
+Eigen::Matrix<double, 8, 8> average_information(const LinearFrames& linear,
                                                 const std::vector<FieldCovariance>& fields,
                                                 const std::vector<FrameEquations>& frames,
                                                 const ScaledFactor& S,
@@ -95,7 +101,7 @@ Eigen::Matrix<double, 7, 7> average_information(const LinearFrames& linear,
                                                 const VectorXd& shape_m,
                                                 const CornerNoise& noise) {
   const Unknowns& n = linear.unknowns;
-  const MatrixXd shape_groups = in_two_groups(shape_m, 3, 2);
+  const MatrixXd shape_groups = shape_in_groups(shape_m);
   WeightedProducts all;
   all.with_shape = MatrixXd::Zero(n.shape, components);
   if (n.shape > 0) all.with_shape.rightCols<2>() = shape_with_shape(linear, fields) * shape_groups;
@@ -111,13 +117,13 @@ Eigen::Matrix<double, 7, 7> average_information(const LinearFrames& linear,
     for (const LinearView& view : linear.frames[f].views) {
       add_field(view, linear.sets[view.set], fields[view.set], c, z.tail(n.shape), noise, all);
     }
-    const MatrixXd motion_groups = in_two_groups(x.head(n.motion), 6, 3);
-    all.with_columns.middleCols<2>(motion_at) =
+    const MatrixXd motion_groups = motion_in_groups(x.head(n.motion));
+    all.with_columns.middleCols<of_motion>(motion_at) =
         frame.products.middleCols(n.rig, n.motion) * motion_groups;
-    all.with_shape.middleCols<2>(motion_at) +=
+    all.with_shape.middleCols<of_motion>(motion_at) +=
         frame.by_shape.middleRows(n.rig, n.motion).transpose() * motion_groups;
     all.with_columns.middleCols<2>(shape_at) = frame.by_shape * shape_groups;
-    all.with_itself.middleCols<2>(motion_at) +=
+    all.with_itself.middleCols<of_motion>(motion_at) +=
         all.with_columns.middleRows(n.rig, n.motion).transpose() * motion_groups;
     const MatrixXd pulls = all.with_columns.middleRows(n.rig, n.own());
     const MatrixXd moved = frame.T.solve(pulls);
@@ -127,9 +133,9 @@ Eigen::Matrix<double, 7, 7> average_information(const LinearFrames& linear,
   }
   scores.bottomRows(n.shape) += all.with_shape;
   all.with_itself.rightCols<2>() = all.with_shape.transpose() * shape_groups;
-  all.with_itself.bottomLeftCorner<4, 3>() = all.with_itself.topRightCorner<3, 4>().transpose();
-  all.with_itself.block<2, 2>(shape_at, motion_at) =
-      all.with_itself.block<2, 2>(motion_at, shape_at).transpose();
+  all.with_itself.bottomLeftCorner<5, 3>() = all.with_itself.topRightCorner<3, 5>().transpose();
+  all.with_itself.block<2, of_motion>(shape_at, motion_at) =
+      all.with_itself.block<of_motion, 2>(motion_at, shape_at).transpose();
   return information + all.with_itself - scores.transpose() * S.solve(scores);
 }
 

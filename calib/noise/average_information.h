@@ -20,8 +20,8 @@ namespace vernier::internal {
 /// With e = W ε = P r (calib/noise/likelihood_gradient.h), q is 2 w² e, 2 g² K e and g² ∂K/∂ln ℓ e,
 /// and for a random effect u with columns U it is −2 U û, since û = −Σ_u Uᵀ P r. P q is that of the
 /// mixed model equations with q in place of r. `S` and `z` of the solution; `shape_m`: the whole
-/// shape û. In the order w, g, ℓ, s_r, s_t, b, h, zero for parts that are not there.
-Eigen::Matrix<double, 7, 7> average_information(const LinearFrames& linear,
+/// shape û. In the order w, g, ℓ, s_r, s_t, s_b, b, h, zero for parts that are not there.
+Eigen::Matrix<double, 8, 8> average_information(const LinearFrames& linear,
                                                 const std::vector<FieldCovariance>& fields,
                                                 const std::vector<FrameEquations>& frames,
                                                 const ScaledFactor& S,

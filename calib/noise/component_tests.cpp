@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/noise/component_tests.h"
 
-#include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -28,18 +28,30 @@ ComponentTest two_variances_test(double minus_two_log, double minus_two_log_with
   return {ratio, 0.5 * chi_squared_survival(ratio, 1) + 0.25 * chi_squared_survival(ratio, 2)};
 }
 
-/// The part's components of `from`, the others of `noise`.
+/// The part's components of `from`, the others of `noise`; the motion along the baseline is as
+/// large as that across it.
 CornerNoise with_part(CornerNoise noise, bool NoiseParts::*part, const CornerNoise& from) {
   if (part == &NoiseParts::motion) {
     noise.motion_rad = from.motion_rad;
     noise.motion_m = from.motion_m;
+    noise.motion_baseline_m = from.motion_baseline_m;
   } else if (part == &NoiseParts::shape) {
     noise.shape_plane_m = from.shape_plane_m;
     noise.shape_height_m = from.shape_height_m;
-  } else {
+  } else if (part == &NoiseParts::field) {
     noise.field_px = from.field_px;
     noise.field_length_m = from.field_length_m;
+  } else {
+    noise.motion_baseline_m = noise.motion_m;
   }
+  return noise;
+}
+
+/// A start without `part`: an isotropic motion is as large as the other in the mean of the axes.
+CornerNoise start_without(bool NoiseParts::*part, CornerNoise noise) {
+  if (part != &NoiseParts::baseline_motion) return noise;
+  const double along = noise.motion_baseline_m, across = noise.motion_m;
+  noise.motion_m = std::sqrt((along * along + 2 * across * across) / 3);
   return noise;
 }
 
@@ -55,33 +67,14 @@ class NestedFits {
 
   const NoiseFit& fit() const { return fit_; }
 
-  /// −2 l without a part.
-  double without(bool NoiseParts::*part) {
+  NoiseFit without(bool NoiseParts::*part) {
     NoiseParts fewer = fit_.parts;
     fewer.*part = false;
-    const NoiseFit less = fit_corner_noise(likelihood_of_(fewer), spacing_m_, fit_.noise);
-    NoiseFit again =
-        fit_corner_noise(all_, spacing_m_, with_part(less.noise, part, start_));
+    NoiseFit less =
+        fit_corner_noise(likelihood_of_(fewer), spacing_m_, start_without(part, fit_.noise));
+    NoiseFit again = fit_corner_noise(all_, spacing_m_, with_part(less.noise, part, start_));
     if (again.solution.minus_two_log < fit_.solution.minus_two_log) fit_ = std::move(again);
-    return less.solution.minus_two_log;
-  }
-
-  /// With 0 for shape and motion that are not in `found`; the solution is that of next to nothing.
-  NoiseFit with(NoiseParts found) const {
-    constexpr double next_to_nothing = 1e-9;
-    NoiseFit fit = fit_corner_noise(likelihood_of_(found), spacing_m_, fit_.noise);
-    fit.parts = fit_.parts;
-    CornerNoise there = fit.noise;
-    if (fit.parts.motion && !found.motion) {
-      fit.noise.motion_rad = fit.noise.motion_m = 0;
-      there.motion_rad = there.motion_m = next_to_nothing;
-    }
-    if (fit.parts.shape && !found.shape) {
-      fit.noise.shape_plane_m = fit.noise.shape_height_m = 0;
-      there.shape_plane_m = there.shape_height_m = next_to_nothing;
-    }
-    fit.solution = all_.at(there, RestrictedLikelihood::Want::solution);
-    return fit;
+    return less;
   }
 
  private:
@@ -92,10 +85,45 @@ class NestedFits {
   NoiseFit fit_;
 };
 
+/// The components of `fit`, with 0 for the shape and motion whose ratio is 0; the solution is that
+/// of next to nothing.
+NoiseFit with_what_is_there(const NoiseFit& fit,
+                            const LikelihoodOf& likelihood_of,
+                            const TestedNoise& tests,
+                            double spacing_m) {
+  constexpr double next_to_nothing = 1e-9;
+  const auto absent = [](const std::optional<ComponentTest>& t) { return t && !(t->ratio > 0); };
+  const bool no_motion = absent(tests.motion), no_shape = absent(tests.shape);
+  if (!no_motion && !no_shape) return fit;
+  NoiseParts found = fit.parts;
+  found.motion = found.motion && !no_motion;
+  found.shape = found.shape && !no_shape;
+  NoiseFit fewer = fit_corner_noise(likelihood_of(found), spacing_m, fit.noise);
+  fewer.parts = fit.parts;
+  CornerNoise near = fewer.noise;
+  if (no_motion) near.motion_rad = near.motion_m = near.motion_baseline_m = next_to_nothing;
+  if (no_shape) near.shape_plane_m = near.shape_height_m = next_to_nothing;
+  fewer.solution = likelihood_of(fit.parts).at(near, RestrictedLikelihood::Want::solution);
+  return fewer;
+}
+
 }  // namespace
 
 ComponentTest motion_test(double minus_two_log, double minus_two_log_without) {
   return two_variances_test(minus_two_log, minus_two_log_without);
+}
+
+ComponentTest baseline_motion_test(double minus_two_log, double minus_two_log_without) {
+  const double ratio = ratio_of(minus_two_log, minus_two_log_without);
+  if (!(ratio > 0)) return {};
+  return {ratio, 0.375 * chi_squared_survival(ratio, 1) + 0.375 * chi_squared_survival(ratio, 2) +
+                     0.125 * chi_squared_survival(ratio, 3)};
+}
+
+ComponentTest isotropy_test(double minus_two_log, double minus_two_log_isotropic) {
+  const double ratio = ratio_of(minus_two_log, minus_two_log_isotropic);
+  if (!(ratio > 0)) return {};
+  return {ratio, chi_squared_survival(ratio, 1)};
 }
 
 ComponentTest shape_test(double minus_two_log, double minus_two_log_without) {
@@ -115,19 +143,30 @@ TestedNoise fit_and_test(const LikelihoodOf& likelihood_of,
   NestedFits fits(likelihood_of, parts, spacing_m);
   const NoiseParts there = fits.fit().parts;
   std::optional<double> motion, field, shape;
-  if (there.shape && tested.shape) shape = fits.without(&NoiseParts::shape);
-  if (there.motion && tested.motion) motion = fits.without(&NoiseParts::motion);
-  if (there.field && tested.field) field = fits.without(&NoiseParts::field);
-  TestedNoise result{fits.fit(), {}, {}, {}};
+  std::optional<NoiseFit> isotropic;
+  const auto without = [&](bool NoiseParts::*part) {
+    return fits.without(part).solution.minus_two_log;
+  };
+  if (there.shape && tested.shape) shape = without(&NoiseParts::shape);
+  if (there.motion && tested.motion) motion = without(&NoiseParts::motion);
+  if (there.field && tested.field) field = without(&NoiseParts::field);
+  if (there.baseline_motion) isotropic = fits.without(&NoiseParts::baseline_motion);
+  TestedNoise result{fits.fit(), {}, {}, {}, {}};
   const double all = result.fit.solution.minus_two_log;
   if (shape) result.shape = shape_test(all, *shape);
-  if (motion) result.motion = motion_test(all, *motion);
+  if (motion) result.motion = (isotropic ? baseline_motion_test : motion_test)(all, *motion);
   if (field) result.field = field_test(all, *field);
-  NoiseParts found = there;
-  if (result.shape && !(result.shape->ratio > 0)) found.shape = false;
-  if (result.motion && !(result.motion->ratio > 0)) found.motion = false;
-  if (found.shape != there.shape || found.motion != there.motion) result.fit = fits.with(found);
+  if (isotropic) {
+    result.isotropy = isotropy_test(all, isotropic->solution.minus_two_log);
+    if (!result.is_along_baseline()) result.fit = std::move(*isotropic);
+  }
+  result.fit = with_what_is_there(result.fit, likelihood_of, result, spacing_m);
   return result;
+}
+
+bool TestedNoise::is_along_baseline() const {
+  constexpr double level = 0.05;
+  return isotropy && isotropy->p_value < level;
 }
 
 }  // namespace vernier::internal

@@ -25,11 +25,7 @@ Eigen::MatrixXd corner_covariance(const FrameRows& rows,
     V.block(view.first, view.first, n, n) += K;
     V.block(view.first + n, view.first + n, n, n) += K;
   }
-  Eigen::VectorXd variances(rows.by_motion.cols());
-  for (Eigen::Index k = 0; k < variances.size(); ++k) {
-    const double s = k % 6 < 3 ? noise.motion_rad : noise.motion_m;
-    variances[k] = s * s;
-  }
+  const Eigen::VectorXd variances = motion_sigmas(noise, rows.by_motion.cols()).cwiseAbs2();
   V += rows.by_motion * variances.asDiagonal() * rows.by_motion.transpose();
   return V;
 }

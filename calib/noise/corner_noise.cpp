@@ -12,8 +12,18 @@
 namespace vernier::internal {
 
 CornerNoise noise_of(const CalibrationEffects& effects) {
-  return {effects.white_px, effects.field_px,      effects.field_length_m, effects.motion_rad,
-          effects.motion_m, effects.shape_plane_m, effects.shape_height_m};
+  return {effects.white_px,      effects.field_px,      effects.field_length_m,
+          effects.motion_rad,    effects.motion_m,      effects.motion_baseline_m,
+          effects.shape_plane_m, effects.shape_height_m};
+}
+
+Eigen::VectorXd motion_sigmas(const CornerNoise& noise, Eigen::Index columns) {
+  const double along = noise.motion_baseline_m > 0 ? noise.motion_baseline_m : noise.motion_m;
+  Eigen::VectorXd sigmas(columns);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    sigmas[k] = k % 6 < 3 ? noise.motion_rad : k % 6 == 3 ? along : noise.motion_m;
+  }
+  return sigmas;
 }
 
 double point_spacing_m(const std::vector<Eigen::Vector3d>& target_m) {

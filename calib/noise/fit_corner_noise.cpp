@@ -130,7 +130,7 @@ CornerNoise usual_start(const RestrictedLikelihood& likelihood,
                         double spacing_m,
                         double field_spacings) {
   // with little else, white noise alone has the residuals' size
-  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9};
+  CornerNoise unit{1, 0, spacing_m, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9};
   const NoiseSolution s = likelihood.at(unit, RestrictedLikelihood::Want::step);
   const double dof = static_cast<double>(likelihood.coordinates()) -
                      6.0 * static_cast<double>(likelihood.frames()) -
@@ -140,7 +140,7 @@ CornerNoise usual_start(const RestrictedLikelihood& likelihood,
   start.white_px = 0.7 * sigma;
   start.field_px = 0.5 * sigma;
   start.field_length_m = field_spacings * spacing_m;
-  start.motion_m = 0.004 * spacing_m;
+  start.motion_m = start.motion_baseline_m = 0.004 * spacing_m;
   start.motion_rad = 1e-3;
   start.shape_plane_m = 0.001 * spacing_m;
   start.shape_height_m = 0.004 * spacing_m;
@@ -160,6 +160,23 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
   }
   best.solution = likelihood.at(best.noise, RestrictedLikelihood::Want::solution);
   return best;
+}
+
+CornerNoise with_mean_motion(const RestrictedLikelihood& likelihood, const NoiseFit& fit) {
+  if (!likelihood.parts().motion) return fit.noise;
+  constexpr double least_freedom = 4;
+  MatrixXd information = 0.5 * fit.solution.information;
+  information.diagonal().array() += prior_precision;
+  const Eigen::Index n = information.rows();
+  const VectorXd v = solve_symmetric(information, MatrixXd(MatrixXd::Identity(n, n))).diagonal();
+  VectorXd logs = likelihood.logs(fit.noise);
+  const Eigen::Index first = likelihood.parts().field ? 3 : 1;
+  const Eigen::Index count = likelihood.parts().baseline_motion ? 3 : 2;
+  for (Eigen::Index k = first; k < first + count; ++k) {
+    const double freedom = std::max(least_freedom, 1 / (2 * v[k]));
+    logs[k] += 0.5 * std::log(freedom / (freedom - 2));
+  }
+  return likelihood.noise(logs);
 }
 
 }  // namespace vernier::internal

@@ -36,4 +36,11 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
                           const std::optional<CornerNoise>& start = {},
                           double least_gain = 1e-4);
 
+/// The fit's components, those of the motion at the mean of their variance instead of its mode:
+/// with v the variance of ln s by the information of the likelihood, s² has about ν = 1 / (2 v)
+/// degrees of freedom, and given the data, with a flat prior of ln s, the mean s² ν / (ν − 2). What
+/// few frames say of a motion is uncertain, and a covariance at the mode is too small: by that
+/// factor, the variance of Student's t. ν is taken as 4 at least.
+CornerNoise with_mean_motion(const RestrictedLikelihood& likelihood, const NoiseFit& fit);
+
 }  // namespace vernier::internal

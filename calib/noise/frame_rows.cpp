@@ -73,10 +73,22 @@ void fill(const Scene& scene,
       6 * (c - 1);  // w × (P − t) + τ = w × (P − centre) + τ', τ = τ' + w × (t − centre)
   rows.by_motion.block(first, at, count, 3) =
       by_pose.leftCols<3>() - by_pose.rightCols<3>() * hat(T_first_board.t - centre_m);
-  rows.by_motion.block(first, at + 3, count, 3) = by_pose.rightCols<3>();
+  rows.by_motion.block(first, at + 3, count, 3) =
+      by_pose.rightCols<3>() * rows.motion_axes[static_cast<std::size_t>(c - 1)];
 }
 
 }  // namespace
+
+Eigen::Matrix3d motion_axes(const Rig& rig, int camera) {
+  const Pose& T = rig.T_camera_first[static_cast<std::size_t>(camera)];
+  const Eigen::Vector3d centre_m = -(T.R.transpose() * T.t);
+  if (!(centre_m.norm() > 0)) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d axes;
+  axes.col(0) = centre_m.normalized();
+  axes.col(1) = axes.col(0).unitOrthogonal();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
 
 std::vector<FrameRows> frame_rows(const BoardObservations& observations,
                                   const BoardState& state,
@@ -85,12 +97,17 @@ std::vector<FrameRows> frame_rows(const BoardObservations& observations,
   const Scene scene{state, free, warped_target(observations.target_m, state.warp_m),
                     warp_shapes(observations.target_m), warp == BoardWarp::free};
   std::vector<FrameRows> all;
+  std::vector<Eigen::Matrix3d> axes;
+  for (std::size_t c = 1; c < state.rig.cameras.size(); ++c) {
+    axes.push_back(motion_axes(state.rig, static_cast<int>(c)));
+  }
   auto view = observations.views.begin();
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
     std::vector<const BoardView*> views;
     Eigen::Index count = 0;
     FrameRows& rows = all.emplace_back();
     rows.frame = state.frames[f];
+    rows.motion_axes = axes;
     for (; view != observations.views.end() && view->frame == rows.frame; ++view) {
       views.push_back(&*view);
       count += 2 * static_cast<Eigen::Index>(view->ids.size());

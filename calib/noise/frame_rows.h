@@ -7,6 +7,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/rig.h"
 
 namespace vernier::internal {
 
@@ -21,7 +22,8 @@ struct ViewRows {
 /// Pixels; one row per coordinate.
 struct FrameRows {
   int frame = 0;
-  std::vector<ViewRows> views;  ///< by camera
+  std::vector<ViewRows> views;               ///< by camera
+  std::vector<Eigen::Matrix3d> motion_axes;  ///< of each camera but the first
   Eigen::VectorXd residual_px;
   Eigen::MatrixXd by_rig;  ///< A: by the free directions of the rig, then the warp if it is free
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;   ///< B: by the left tangent of T_first_board
@@ -29,10 +31,14 @@ struct FrameRows {
   Eigen::Matrix<double, Eigen::Dynamic, 3> by_point;  ///< D: by the corner in the board's frame (m)
 };
 
+/// Columns: the direction from the first camera to this one, in the first one's frame, and two
+/// across it; the axes of the first camera if both are in one place.
+Eigen::Matrix3d motion_axes(const Rig& rig, int camera);
+
 /// Of every frame of the state. The motion of the board has six columns for each camera but the
-/// first: it turns about the mean of the frame's corners and moves along the axes of the first
-/// camera, before the exposure of that camera. `free` holds the free directions of the rig
-/// (calib/estimate/held_parameters.h), parameters x free.
+/// first: it turns about the mean of the frame's corners, about the axes of the first camera, and
+/// moves along motion_axes(), before the exposure of that camera. `free` holds the free directions
+/// of the rig (calib/estimate/held_parameters.h), parameters x free.
 std::vector<FrameRows> frame_rows(const BoardObservations& observations,
                                   const BoardState& state,
                                   const Eigen::MatrixXd& free,

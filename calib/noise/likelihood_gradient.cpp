@@ -103,6 +103,7 @@ LikelihoodGradient likelihood_gradient(const LinearFrames& linear,
                                        const VectorXd& z,
                                        const CornerNoise& noise) {
   const Unknowns& unknowns = linear.unknowns;
+  const VectorXd sigmas = motion_sigmas(noise, unknowns.motion);
   LikelihoodGradient gradient;
   std::vector<MatrixXd> N, T_inverses;
   for (const FieldCovariance& field : fields) {
@@ -119,10 +120,8 @@ LikelihoodGradient likelihood_gradient(const LinearFrames& linear,
       add_view(view, linear.sets[view.set].ids, moments, N[view.set]);
     }
     for (Index m = 0; m < unknowns.motion; ++m) {
-      const bool turns = m % 6 < 3;
-      const double s = turns ? noise.motion_rad : noise.motion_m;
-      gradient.motion[turns ? 0 : 1] +=
-          2 * (1 - moments.columns(unknowns.rig + m, unknowns.rig + m) / (s * s));
+      const Index at = unknowns.rig + m, group = m % 6 < 3 ? 0 : m % 6 == 3 ? 2 : 1;
+      gradient.motion[group] += 2 * (1 - moments.columns(at, at) / (sigmas[m] * sigmas[m]));
     }
   }
   const VectorXd s = z.tail(unknowns.shape);

@@ -27,7 +27,7 @@ namespace vernier::internal {
 /// the shape's left at zero.
 struct LikelihoodGradient {
   Eigen::Vector3d field = Eigen::Vector3d::Zero();   ///< by ln w, ln g and ln ℓ
-  Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< by ln s_r and ln s_t
+  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< by ln s_r, ln s_t and ln s_b
 };
 
 LikelihoodGradient likelihood_gradient(const LinearFrames& linear,

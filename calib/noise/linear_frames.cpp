@@ -75,6 +75,7 @@ LinearFrames::LinearFrames(const std::vector<FrameRows>& rows_of_frames,
     const MatrixXd Yt = transposed_columns(rows, unknowns);
     LinearFrame& frame = frames.emplace_back();
     frame.frame = rows.frame;
+    frame.motion_axes = rows.motion_axes;
     for (const ViewRows& view : rows.views) {
       LinearView linear = linear_view(view, Yt, rows, parts.shape);
       const auto [at, is_new] = known.try_emplace(view.ids, sets.size());

@@ -33,6 +33,7 @@ struct LinearView {
 struct LinearFrame {
   int frame = 0;
   std::vector<LinearView> views;
+  std::vector<Eigen::Matrix3d> motion_axes;  ///< of each camera but the first
 };
 
 /// How many unknowns there are: z, those of all frames (rig, then x, y and z of every point of the

@@ -144,6 +144,7 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
     const RestrictedLikelihood likelihood = problem.at(result.state, result.shape_m);
     if (!last) last = usual_start(likelihood, spacing_m);
     result.noise = best_fit(likelihood, spacing_m, *last, round);
+    if (&round == &rounds.back()) result.noise.noise = with_mean_motion(likelihood, result.noise);
     last = result.noise.noise;
     result.converged = false;
     for (int i = 0; i < most_steps && !result.converged; ++i) {

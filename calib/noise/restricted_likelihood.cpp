@@ -28,6 +28,7 @@ namespace {
 
 NoiseParts with_motion_if_seen(NoiseParts parts, const std::vector<FrameRows>& frames) {
   if (!frames.empty() && frames[0].by_motion.cols() == 0) parts.motion = false;
+  if (!parts.motion) parts.baseline_motion = false;
   return parts;
 }
 
@@ -57,6 +58,7 @@ std::vector<double CornerNoise::*> RestrictedLikelihood::components() const {
   std::vector<double CornerNoise::*> all{&CornerNoise::white_px};
   if (parts_.field) all.insert(all.end(), {&CornerNoise::field_px, &CornerNoise::field_length_m});
   if (parts_.motion) all.insert(all.end(), {&CornerNoise::motion_rad, &CornerNoise::motion_m});
+  if (parts_.baseline_motion) all.push_back(&CornerNoise::motion_baseline_m);
   if (parts_.shape) {
     all.insert(all.end(), {&CornerNoise::shape_plane_m, &CornerNoise::shape_height_m});
   }
@@ -89,12 +91,7 @@ VectorXd RestrictedLikelihood::shape_variances(const CornerNoise& noise) const {
 }
 
 VectorXd RestrictedLikelihood::motion_variances(const CornerNoise& noise) const {
-  VectorXd variances(linear_.unknowns.motion);
-  for (Index i = 0; i < variances.size(); ++i) {
-    const double s = i % 6 < 3 ? noise.motion_rad : noise.motion_m;
-    variances[i] = s * s;
-  }
-  return variances;
+  return motion_sigmas(noise, linear_.unknowns.motion).cwiseAbs2();
 }
 
 namespace {
@@ -130,6 +127,8 @@ void add_motions(const LinearFrame& linear,
     const VectorXd beta = C * motion.predicted.cwiseQuotient(s);
     C.diagonal() -= s;
     motion.chi2 = beta.dot(solve_symmetric(C, beta));
+    motion.predicted.tail<3>().applyOnTheLeft(
+        linear.motion_axes[static_cast<std::size_t>(view.camera - 1)]);
   }
 }
 
@@ -219,7 +218,8 @@ VectorXd RestrictedLikelihood::gradient(const std::vector<FieldCovariance>& fiel
   }
   if (parts_.motion) {
     gradient[k++] = by.motion[0];
-    gradient[k++] = by.motion[1];
+    gradient[k++] = parts_.baseline_motion ? by.motion[1] : by.motion[1] + by.motion[2];
+    if (parts_.baseline_motion) gradient[k++] = by.motion[2];
   }
   if (!parts_.shape) return gradient;
   gradient.tail<2>().setZero();
@@ -242,9 +242,15 @@ MatrixXd RestrictedLikelihood::information(const std::vector<FieldCovariance>& f
   std::vector<Index> there{0};
   if (parts_.field) there.insert(there.end(), {1, 2});
   if (parts_.motion) there.insert(there.end(), {3, 4});
-  if (parts_.shape) there.insert(there.end(), {5, 6});
+  if (parts_.baseline_motion) there.push_back(5);
+  if (parts_.shape) there.insert(there.end(), {6, 7});
   const VectorXd shape_m = shape_m_ + z.tail(linear_.unknowns.shape);
-  return average_information(linear_, fields, frames, S, z, shape_m, noise)(there, there);
+  MatrixXd all = average_information(linear_, fields, frames, S, z, shape_m, noise);
+  if (parts_.motion && !parts_.baseline_motion) {  // s_t is that of both
+    all.row(4) += all.row(5);
+    all.col(4) += all.col(5);
+  }
+  return all(there, there);
 }
 
 NoiseSolution RestrictedLikelihood::at(const CornerNoise& noise, Want want) const {

@@ -94,7 +94,7 @@ class SplitOfBoards {
   void add(const RigEstimate& estimate,
            const std::vector<int>& frames,
            HeldOutBoardsResult& result) {
-    const NoiseParts parts{.motion = stand_ == BoardStand::hand_held};
+    const NoiseParts parts{.motion = stand_ == BoardStand::hand_held, .baseline_motion = true};
     const CornerNoiseEstimate noise =
         estimate_corner_noise(estimate, parts, {.field = false, .motion = false});
     result.noise_not_found += !noise.fit.converged;

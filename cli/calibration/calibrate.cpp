@@ -84,8 +84,9 @@ std::string effects_text(const CalibrationEffects& effects, const EffectsTest& t
                   effects.white_px, effects.field_px, 1e3 * effects.field_length_m);
   if (effects.motion_m > 0) {
     text += fmt::format(
-        "  the board moved between exposures: {:.2f} mm and {:.2f} mrad rms about each axis{}\n",
-        1e3 * effects.motion_m, 1e3 * effects.motion_rad, found_text(test.motion));
+        "  the board moved between exposures: {} and {:.2f} mrad rms about each axis{}\n",
+        motion_words(effects.motion_m, effects.motion_baseline_m), 1e3 * effects.motion_rad,
+        found_text(test.motion));
   }
   if (!effects.shape_m.empty()) {
     text += fmt::format(
@@ -107,7 +108,9 @@ std::string no_effects_text(const EffectsTest& test) {
 
 /// Null for what was not tested.
 Json effects_test_json(const EffectsTest& test) {
-  Json json{{"shape", test_json(test.shape)}, {"motion", test_json(test.motion)}};
+  Json json{{"shape", test_json(test.shape)},
+            {"motion", test_json(test.motion)},
+            {"isotropy", test_json(test.isotropy)}};
   if (!test.not_tested.empty()) json["not_tested"] = test.not_tested;
   return json;
 }

@@ -65,6 +65,8 @@ ToleranceCheck effects_gate(const CalibrationEffects& from_file, const Calibrati
   compare("field_px", from_file.field_px, again.field_px, again.white_px);
   compare("field_length_m", from_file.field_length_m, again.field_length_m, again.field_length_m);
   compare("motion_m", from_file.motion_m, again.motion_m, again.motion_m);
+  compare("motion_baseline_m", from_file.motion_baseline_m, again.motion_baseline_m,
+          again.motion_baseline_m);
   compare("motion_rad", from_file.motion_rad, again.motion_rad, again.motion_rad);
   const double height_m = std::hypot(again.shape_height_m, again.shape_plane_m);
   compare("shape_height_m", from_file.shape_height_m, again.shape_height_m, height_m);

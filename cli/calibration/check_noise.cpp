@@ -38,13 +38,16 @@ Json noise_json(const CornerNoiseEstimate& found, const Rig& rig) {
             {"field_test", test_json(found.field)},
             {"motion_rad", nullptr},
             {"motion_m", nullptr},
+            {"motion_baseline_m", nullptr},
             {"motion_test", test_json(found.motion)},
+            {"isotropy_test", test_json(found.isotropy)},
             {"converged", found.fit.converged},
             {"motions", Json::array()},
             {"moved", Json::array()}};
   if (!found.motion) return json;
   json["motion_rad"] = noise.motion_rad;
   json["motion_m"] = noise.motion_m;
+  if (found.is_along_baseline()) json["motion_baseline_m"] = noise.motion_baseline_m;
   for (const FrameMotion& m : found.fit.solution.motions)
     json["motions"].push_back(motion_json(m, rig));
   for (const FrameMotion& m : found.moved()) {
@@ -65,8 +68,9 @@ std::string noise_text(const CornerNoiseEstimate& found, const Rig& rig) {
            fmt::format("  no motion of the board between exposures ({})\n", p_text(*found.motion));
   }
   text += fmt::format(
-      "  {:.2f} mm and {:.2f} mrad, each axis, of motion of the board between exposures ({})\n",
-      1e3 * noise.motion_m, 1e3 * noise.motion_rad, p_text(*found.motion));
+      "  {} and {:.2f} mrad, each axis, of motion of the board between exposures ({})\n",
+      motion_words(noise.motion_m, noise.motion_baseline_m), 1e3 * noise.motion_rad,
+      p_text(*found.motion));
   for (const FrameMotion& m : found.moved()) {
     text += fmt::format(
         "  the board moved {:.1f} mm and turned {:.1f} mrad between the exposures of frame {}{}\n",
@@ -83,8 +87,8 @@ CheckSection check_corner_noise(const RigEstimate& estimate,
                                 BoardStand stand,
                                 const Session& session) {
   session.info("estimating the components of the corner noise");
-  const CornerNoiseEstimate found =
-      estimate_corner_noise(estimate, {.motion = stand == BoardStand::hand_held});
+  const CornerNoiseEstimate found = estimate_corner_noise(
+      estimate, {.motion = stand == BoardStand::hand_held, .baseline_motion = true});
   CheckSection part;
   part.json = noise_json(found, estimate.rig);
   part.text = noise_text(found, estimate.rig);

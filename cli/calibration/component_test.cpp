@@ -17,6 +17,12 @@ Json test_json(const std::optional<ComponentTest>& test) {
   return {{"likelihood_ratio", test->ratio}, {"p_value", test->p_value}};
 }
 
+std::string motion_words(double motion_m, double motion_baseline_m) {
+  if (!(motion_baseline_m > 0)) return fmt::format("{:.2f} mm", 1e3 * motion_m);
+  return fmt::format("{:.2f} mm along the baseline, {:.2f} mm across it", 1e3 * motion_baseline_m,
+                     1e3 * motion_m);
+}
+
 std::string p_text(const ComponentTest& test) {
   return test.p_value < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", test.p_value);
 }

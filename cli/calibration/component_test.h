@@ -14,6 +14,9 @@ namespace vernier::cli {
 /// `likelihood_ratio` and `p_value`; null without a test.
 Json test_json(const std::optional<ComponentTest>& test);
 
+/// "0.12 mm", or "0.50 mm along the baseline, 0.12 mm across it" where that is not 0.
+std::string motion_words(double motion_m, double motion_baseline_m);
+
 /// "p = 0.0123"
 std::string p_text(const ComponentTest& test);
 

@@ -13,6 +13,24 @@
 
 namespace vernier::cli {
 
+namespace {
+
+/// For a motion that was asked for: whether it is along the baseline, which is then set in the
+/// options and estimated. The estimate is kept where its corners are not tested.
+void look_along_baseline(const BoardObservations& observations,
+                         CalibrationOptions& options,
+                         FoundCalibration& found) {
+  CalibrationOptions usual = options;
+  usual.board_shape = usual.motion = false;
+  const EffectsTest test = test_effects(without_effects(found.estimate), usual);
+  found.test.isotropy = test.isotropy;
+  if (!test.along_baseline) return;
+  options.baseline_motion = true;
+  found.estimate = calibrate(observations, options);
+}
+
+}  // namespace
+
 FoundCalibration calibrate_and_look(const BoardObservations& observations,
                                     CalibrationOptions& options,
                                     LookFor look) {
@@ -23,6 +41,7 @@ FoundCalibration calibrate_and_look(const BoardObservations& observations,
     usual.board_shape = usual.motion = false;
     found.comparison = compare_models(without_effects(found.estimate), usual);
   }
+  if (options.motion) look_along_baseline(observations, options, found);
   if (!look.effects) return found;
   if (!found.comparison.warnings.empty()) {
     found.test.not_tested = "a richer lens model predicts held-out views better";

@@ -124,6 +124,7 @@ Json effects_json(const CalibrationEffects& effects) {
           {"field_px", effects.field_px},
           {"field_length_m", effects.field_length_m},
           {"motion_m", effects.motion_m},
+          {"motion_baseline_m", effects.motion_baseline_m},
           {"motion_rad", effects.motion_rad},
           {"shape_height_m", effects.shape_height_m},
           {"shape_plane_m", effects.shape_plane_m}};

@@ -12,6 +12,7 @@
 #include "calib/camera.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/field_spectrum.h"
+#include "calib/noise/frame_rows.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
@@ -78,6 +79,11 @@ inline NoisyBoard noisy_board(const Rig& rig,
       internal::RandomStream motions = draws(motion, view.frame, c);
       for (int k = 0; k < 6; ++k)
         u[k] = motions.normal() * (k < 3 ? noise.motion_rad : noise.motion_m);
+      if (noise.motion_baseline_m > 0) {
+        const Eigen::Vector3d along = internal::motion_axes(rig, c).col(0);
+        const double across = u.tail<3>().dot(along);
+        u.tail<3>() += (noise.motion_baseline_m / noise.motion_m - 1) * across * along;
+      }
       if (c == 1) result.motions.push_back(u);
     }
     internal::RandomStream fields = draws(field, view.frame, c);

@@ -110,14 +110,17 @@ function summary_table(rig) {
 
 /** What was estimated beside the rig, and what of the page is without it. */
 function effects_words(effects) {
-  const { motion_m, motion_rad, shape_height_m, shape_plane_m } = effects;
+  const { motion_baseline_m, motion_m, motion_rad, shape_height_m, shape_plane_m } = effects;
   const words = [];
   if (shape_height_m > 0) {
     words.push(`an uneven board, ${significant(1e3 * shape_height_m, 2)} mm in height and`
       + ` ${significant(1e3 * shape_plane_m, 2)} mm in its plane (RMS)`);
   }
   if (motion_m > 0) {
-    words.push(`motion between the exposures, ${significant(1e3 * motion_m, 2)} mm and`
+    const along = motion_baseline_m > 0
+      ? `${significant(1e3 * motion_baseline_m, 2)} mm along the baseline, ` : "";
+    words.push(`motion between the exposures, ${along}${significant(1e3 * motion_m, 2)} mm`
+      + `${along && " across it"} and`
       + ` ${significant(1e3 * motion_rad, 2)} mrad (RMS about each axis)`);
   }
   return `${words.join("; ")}. Residuals, influence of views, lens models and held-out boards are`

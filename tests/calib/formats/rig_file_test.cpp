@@ -60,7 +60,7 @@ TEST(RigFile, RoundTrip) {
 TEST(RigFile, KeepsRandomEffects) {
   RigEstimate e = estimate();
   e.calibration->effects = CalibrationEffects{
-      0.1, 0.05, 0.06, 1e-3, 3e-4, 5e-5, 2e-4, {{0, 1e-4, -2e-4}, {1e-5, 0, 3e-4}}};
+      0.1, 0.05, 0.06, 1e-3, 3e-4, 7e-4, 5e-5, 2e-4, {{0, 1e-4, -2e-4}, {1e-5, 0, 3e-4}}};
   const std::string text = format_rig(e, KeepEvidence::no);
   const RigFile file = parse_rig(text, "rig.json");
   EXPECT_TRUE(file.warnings.empty());
@@ -70,6 +70,9 @@ TEST(RigFile, KeepsRandomEffects) {
   EXPECT_EQ(after.field_length_m, 0.06);
   EXPECT_EQ(after.motion_rad, 1e-3);
   EXPECT_EQ(after.motion_m, 3e-4);
+  EXPECT_EQ(after.motion_baseline_m, 7e-4);
+  const RigFile older = parse_rig(replaced(text, "\"motion_baseline_m\":0.0007,", ""), "rig.json");
+  EXPECT_EQ(older.estimate.calibration->effects->motion_baseline_m, 0);  // isotropic
   EXPECT_EQ(after.shape_plane_m, 5e-5);
   EXPECT_EQ(after.shape_height_m, 2e-4);
   EXPECT_TRUE(after.shape_m == e.calibration->effects->shape_m);

@@ -71,7 +71,10 @@ test::DenseLikelihood dense(const RigEstimate& estimate) {
 /// Every choice of parts.
 std::vector<NoiseParts> choices() {
   std::vector<NoiseParts> all;
-  for (int k = 0; k < 8; ++k) all.push_back({(k & 1) != 0, (k & 2) != 0, (k & 4) != 0});
+  for (int k = 0; k < 8; ++k) {
+    all.push_back({(k & 1) != 0, (k & 2) != 0, (k & 4) != 0});
+    if (all.back().motion) all.push_back({(k & 1) != 0, true, (k & 4) != 0, true});
+  }
   return all;
 }
 
@@ -80,6 +83,7 @@ CornerNoise only(const NoiseParts& parts) {
   CornerNoise noise = all_parts;
   if (!parts.field) noise.field_px = 0;
   if (!parts.motion) noise.motion_rad = noise.motion_m = 0;
+  if (parts.baseline_motion) noise.motion_baseline_m = 7e-4;
   if (!parts.shape) noise.shape_plane_m = noise.shape_height_m = 0;
   return noise;
 }
@@ -143,6 +147,31 @@ TEST(LikelihoodOfRaggedViews, HasTheAverageInformationOfDenseMatrices) {
   }
 }
 
+// The columns of M are along the baseline and across it: the variance along it is that of a motion
+// of the board in this direction, whatever the axes of the cameras, and equal ones are no new
+// model.
+TEST(LikelihoodOfRaggedViews, HasAMotionAlongTheBaseline) {
+  const RigEstimate estimate = ragged_calibration();
+  const Eigen::Matrix3d axes = motion_axes(estimate.rig, 1);
+  const Pose& T = estimate.rig.T_camera_first[1];
+  EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_LT((T * Eigen::Vector3d(T.t.norm() * axes.col(0))).norm(), 1e-12);  // its centre
+  for (const FrameRows& frame : rows_of(estimate)) {
+    if (frame.views.size() < 2) continue;
+    const MatrixXd along = frame.by_pose.rightCols<3>() * axes.col(0);
+    const Index first = frame.views[1].first;
+    const Index rows = along.rows() - first;
+    EXPECT_LT((frame.by_motion.col(3) - along).tail(rows).norm(), 1e-9 * along.norm());
+    EXPECT_TRUE(frame.by_motion.col(3).head(first).isZero(0));
+  }
+  CornerNoise equal = test::all_parts;
+  const double isotropic = noise_likelihood(estimate, {}).at(equal, Want::step).minus_two_log;
+  equal.motion_baseline_m = equal.motion_m;
+  EXPECT_DOUBLE_EQ(
+      noise_likelihood(estimate, {.baseline_motion = true}).at(equal, Want::step).minus_two_log,
+      isotropic);
+}
+
 // û = −Σ Mᵀ P r and its test against none: β = −G⁻¹ Mᵀ P r has the covariance G⁻¹ − Σ, G = Mᵀ P M.
 TEST(LikelihoodOfRaggedViews, HasTheMotionsOfDenseMatrices) {
   const RigEstimate estimate = ragged_calibration();
@@ -156,7 +185,8 @@ TEST(LikelihoodOfRaggedViews, HasTheMotionsOfDenseMatrices) {
   for (const FrameMotion& motion : motions) {
     const MatrixXd M = oracle.by_motion(static_cast<std::size_t>(motion.frame));
     const VectorXd h = M.transpose() * P * oracle.residuals_px();
-    const VectorXd predicted = -s.cwiseAbs2().cwiseProduct(h);
+    VectorXd predicted = -s.cwiseAbs2().cwiseProduct(h);
+    predicted.tail<3>() = (motion_axes(estimate.rig, 1) * predicted.tail<3>()).eval();
     EXPECT_LT((motion.predicted - predicted).cwiseQuotient(s).norm(), 1e-6);
     const MatrixXd G = M.transpose() * P * M;
     const MatrixXd scaled = s.asDiagonal() * G * s.asDiagonal();  // of β / s

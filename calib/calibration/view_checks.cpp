@@ -7,21 +7,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/observation_checks.h"
+#include "calib/calibration/outliers.h"
 #include "calib/calibration/tilt_check.h"
 #include "calib/calibration/view_pair.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -201,11 +206,12 @@ class PairCheck {
       if (repaired(PairReading::exchanged, exchanged)) continue;
       if (!consensus_.is_gross_misfit(together)) continue;  // the solution will show
       const ViewPair& pair = consensus_.pairs()[i];
-      diagnosis.trust_warnings.push_back(fmt::format(
+      std::string doubt = fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
           "not simultaneous or the corners of one are numbered from another corner of the board; "
           "leave the frame out",
-          image_place(pair.second, second_), pair.alone_px, together));
+          image_place(pair.second, second_), pair.alone_px, together);
+      diagnosis.frame_doubts.push_back({pair.second.frame, std::move(doubt)});
     }
     if (!turned.empty()) throw_turned(turned, as_is.fits);
     if (!exchanged.empty()) throw_exchanged(exchanged);
@@ -304,9 +310,48 @@ ObservationDiagnosis check_views(const BoardObservations& observations,
   for (int c = 1; !sound && c < static_cast<int>(start.rig.cameras.size()); ++c) {
     PairCheck(observations, start.rig, best_partner(observations, c), c).run(diagnosis);
   }
-  if (options.tilts) diagnosis.add(check_tilts(observations, start));
+  if (options.tilts) {
+    const std::vector<int> rest = frames_without(diagnosis.frame_doubts, start.frames);
+    diagnosis.add(check_tilts(at_frames(observations, rest), at_frames(start, rest)));
+  }
   check_baseline(start, diagnosis);
   return diagnosis;
+}
+
+std::vector<int> frames_without(const std::vector<FrameDoubt>& doubts,
+                                const std::vector<int>& frames) {
+  std::vector<int> sound = frames;
+  for (const FrameDoubt& doubt : doubts) std::erase(sound, doubt.frame);
+  return sound;
+}
+
+std::vector<std::string> unrefuted(const std::vector<FrameDoubt>& doubts,
+                                   const BoardObservations& inliers,
+                                   const BoardState& state,
+                                   const std::vector<CornerOutlier>& outliers) {
+  if (doubts.empty()) return {};
+  constexpr double usual = 2;  // times the median residual
+  const CornerResiduals residuals = corner_residuals(inliers, state);
+  std::map<int, double> worst_px;  // of a frame's views, their median residual
+  std::vector<double> medians_px;
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
+    std::vector<double> lengths_px;
+    for (const Eigen::Vector2d& r : residuals[v]) lengths_px.push_back(r.norm());
+    medians_px.push_back(median_or_zero(std::move(lengths_px)));
+    double& worst = worst_px[inliers.views[v].frame];
+    worst = std::max(worst, medians_px.back());
+  }
+  const double most_px = usual * median_or_zero(medians_px);
+  std::vector<std::string> texts;
+  for (const FrameDoubt& doubt : doubts) {
+    const auto own = worst_px.find(doubt.frame);
+    const bool fits =
+        own != worst_px.end() && own->second <= most_px &&
+        std::none_of(outliers.begin(), outliers.end(),
+                     [&](const CornerOutlier& corner) { return corner.frame == doubt.frame; });
+    if (!fits) texts.push_back(doubt.text);
+  }
+  return texts;
 }
 
 }  // namespace vernier::internal

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "calib/base/decompositions.h"
@@ -80,8 +80,8 @@ PairConsensus::PairConsensus(
       alone.camera = 0;
       const Rig one{{cameras_[side->camera]}, {Pose{}}};
       const BoardPoseFit fit =
-          fit_board_pose(observations.target_m, std::span(&alone, 1), one,
-                         board_pose(observations.target_m, alone, one.cameras[0]), 6);
+          fit_board_pose_both_ways(observations.target_m, alone, one,
+                                   board_pose(observations.target_m, alone, one.cameras[0]), 6);
       (side->camera == 0 ? pair.T_first_board : pair.T_second_board) = fit.T_first_board;
       pair.alone_px = std::max(pair.alone_px, fit.rms_px);
     }
@@ -106,10 +106,21 @@ ViewPair PairConsensus::read(const ViewPair& pair, PairReading reading) const {
 BoardPoseFit PairConsensus::together(std::size_t index, PairReading reading, const Rig& rig) const {
   const ViewPair pair = read(pairs_[index], reading);
   const std::array views{pair.first, pair.second};
-  const Pose by_second = rig.T_camera_first[1].inverse() * pair.T_second_board;
-  const BoardPoseFit a = fit_board_pose(observations_.target_m, views, rig, pair.T_first_board, 15);
-  const BoardPoseFit b = fit_board_pose(observations_.target_m, views, rig, by_second, 15);
-  return b.rms_px < a.rms_px ? b : a;
+  const Pose T_first_second = rig.T_camera_first[1].inverse();
+  const auto& target_m = observations_.target_m;
+  BoardPoseFit best{{}, std::numeric_limits<double>::infinity()};
+  const auto consider = [&](const Pose& first, const Pose& second) {
+    for (const Pose& start : {first, T_first_second * second}) {
+      const BoardPoseFit fit = fit_board_pose(target_m, views, rig, start, 15);
+      if (fit.rms_px < best.rms_px) best = fit;
+    }
+  };
+  consider(pair.T_first_board, pair.T_second_board);
+  if (fits(index, best.rms_px)) return best;
+  // noise may have decided on which side of the line of sight the board is tilted
+  consider(mirrored_board_pose(target_m, pair.first, pair.T_first_board),
+           mirrored_board_pose(target_m, pair.second, pair.T_second_board));
+  return best;
 }
 
 double PairConsensus::together_px(std::size_t pair, PairReading reading, const Rig& rig) const {

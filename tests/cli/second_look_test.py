@@ -191,6 +191,46 @@ class WrongThing(cli_test.Case):
         self.assertIn("10 % of the image width and height inwards from the corner", text)
 
 
+SURE = '''import json, sys
+hello = json.loads(sys.stdin.readline())
+nodes = [json.loads(sys.stdin.readline()) for _ in range(hello['nodes'])]
+print('{"ready": true}', flush=True)
+for line in sys.stdin:
+    print(json.dumps({'status': 'answered', 'node': 0, 'pose': nodes[0]['pose'], 'score': 1, %s}), flush=True)
+'''
+STUDY = '''[study]
+trials = 40
+protocol = "near_path"
+[map]
+spacing_m = 4
+[localiser]
+method = "program"
+command = "python3 sure.py"
+[sweep]
+"study.seed" = [1, 2]
+'''
+
+
+class Study(cli_test.Case):
+    def run_sure(self, stated):
+        (self.folder / 'sure.py').write_text(SURE % stated)
+        (self.folder / 's.toml').write_text(STUDY)
+        shutil.rmtree(self.folder / 'out', ignore_errors=True)
+        done = vernier('study', 's.toml', '-o', 'out', '--threads', '1', cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_more_wrong_answers_than_stated_are_said(self):
+        done = self.run_sure("'probability': 0.9999")
+        self.assertRegex(done.stderr, r'warning: \d+ of 40 answers of cell "study.seed = 1" are wrong, where the '
+                                      r'localiser states 1 %, and so in 1 more cells: what it states does not hold')
+        again = vernier('study', 'status', 'out', cwd=self.folder)
+        self.assertIn('are wrong, where the localiser states 1 %', again.stderr)
+
+    def test_who_states_nothing_is_not_held_to_it(self):
+        self.assertNotIn('are wrong', self.run_sure("'looks': 1").stderr)
+
+
 if __name__ == '__main__':
     cli_test.PROGRAM = sys.argv.pop(1)
     unittest.main()

@@ -23,7 +23,9 @@ class Corners(cli_test.Case):
         return ('--observations', self.folder / 'o.csv', '--size', '640x480')
 
     def calibrate(self, *more, frames=12, code=0):
-        done = vernier('calibrate', *self.corners(frames), '-o', self.folder / 'rig.json', *more)
+        corners = self.corners(frames)
+        words = corners[:2] if '--size' in more else corners
+        done = vernier('calibrate', *words, '-o', self.folder / 'rig.json', *more)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -36,6 +38,13 @@ class Result(Corners):
         text = self.calibrate('--warp', '--no-model-check').stdout
         self.assertIn(f'board warp: {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
         self.assertNotIn('board warp', self.calibrate('--no-model-check').stdout)
+
+    def test_cameras_may_differ_in_size(self):
+        self.calibrate('--no-model-check', '--size', '640x480,660x500')
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertEqual([camera['size_px'] for camera in rig['cameras']], [[640, 480], [660, 500]])
+        done = self.calibrate('--size', '640x480,', code=2)
+        self.assertIn('use the form 640x480', done.stderr)
 
     def test_a_held_parameter_is_called_so(self):
         hold = ('--hold', 'left.ax=1', '--no-model-check')

@@ -193,6 +193,7 @@ class PairCheck {
 
   void complain_of_frames(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
     std::vector<Repair> turned, exchanged;
+    std::vector<std::size_t> gross;
     for (std::size_t i = 0; i < as_is.fits.size(); ++i) {
       if (as_is.fits[i]) continue;
       const double together = consensus_.together_px(i, PairReading::as_is, as_is.rig);
@@ -205,6 +206,7 @@ class PairCheck {
       if (consensus_.has_half_turn_ambiguity() && repaired(PairReading::turned, turned)) continue;
       if (repaired(PairReading::exchanged, exchanged)) continue;
       if (!consensus_.is_gross_misfit(together)) continue;  // the solution will show
+      gross.push_back(i);
       const ViewPair& pair = consensus_.pairs()[i];
       std::string doubt = fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
@@ -215,6 +217,26 @@ class PairCheck {
     }
     if (!turned.empty()) throw_turned(turned, as_is.fits);
     if (!exchanged.empty()) throw_exchanged(exchanged);
+    complain_if_crossed(gross, as_is);
+  }
+
+  /// Two frames each of which fits with the second image of the other.
+  void complain_if_crossed(const std::vector<std::size_t>& gross, const Agreement& as_is) const {
+    const auto& pairs = consensus_.pairs();
+    for (std::size_t a = 0; a < gross.size(); ++a) {
+      for (std::size_t b = a + 1; b < gross.size(); ++b) {
+        const std::size_t i = gross[a], j = gross[b];
+        const double one_px = consensus_.crossed_px(i, j, as_is.rig);
+        const double other_px = consensus_.crossed_px(j, i, as_is.rig);
+        if (!consensus_.fits(i, one_px) || !consensus_.fits(j, other_px)) continue;
+        throw Error(fmt::format("{} and {}", image_place(pairs[i].second, second_),
+                                image_place(pairs[j].second, second_)),
+                    fmt::format("each belongs to the other frame (they fit to {:.0f} and {:.0f} px "
+                                "as they are, to {:.1f} and {:.1f} px exchanged)",
+                                as_is.together_px[i], as_is.together_px[j], one_px, other_px),
+                    "exchange the two images or leave both frames out");
+      }
+    }
   }
 
   [[noreturn]] void throw_turned(const std::vector<Repair>& repairs,

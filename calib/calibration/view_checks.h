@@ -28,6 +28,7 @@ struct ViewCheckOptions {
 ///
 ///  - corners numbered half a turn apart, in some frames or in all;
 ///  - left and right exchanged in some frames;
+///  - two frames that each have the other's second image;
 ///  - images paired wrongly throughout: they fit when one camera's are shifted by some frames;
 ///  - the images of one camera mirrored: most frames agree if they are mirrored back;
 ///  - most frames agree on no pose at all (not simultaneous, or the cameras moved);

@@ -104,7 +104,10 @@ ViewPair PairConsensus::read(const ViewPair& pair, PairReading reading) const {
 }
 
 BoardPoseFit PairConsensus::together(std::size_t index, PairReading reading, const Rig& rig) const {
-  const ViewPair pair = read(pairs_[index], reading);
+  return together(read(pairs_[index], reading), rig);
+}
+
+BoardPoseFit PairConsensus::together(const ViewPair& pair, const Rig& rig) const {
   const std::array views{pair.first, pair.second};
   const Pose T_first_second = rig.T_camera_first[1].inverse();
   const auto& target_m = observations_.target_m;
@@ -116,7 +119,7 @@ BoardPoseFit PairConsensus::together(std::size_t index, PairReading reading, con
     }
   };
   consider(pair.T_first_board, pair.T_second_board);
-  if (fits(index, best.rms_px)) return best;
+  if (fits(pair, best.rms_px)) return best;
   // noise may have decided on which side of the line of sight the board is tilted
   consider(mirrored_board_pose(target_m, pair.first, pair.T_first_board),
            mirrored_board_pose(target_m, pair.second, pair.T_second_board));
@@ -127,13 +130,23 @@ double PairConsensus::together_px(std::size_t pair, PairReading reading, const R
   return together(pair, reading, rig).rms_px;
 }
 
+double PairConsensus::crossed_px(std::size_t first, std::size_t second, const Rig& rig) const {
+  ViewPair pair = pairs_[first];
+  pair.second = pairs_[second].second;
+  pair.T_second_board = pairs_[second].T_second_board;
+  return together(pair, rig).rms_px;
+}
+
 double PairConsensus::longest_px() const {
   return std::max(cameras_[0].size_px.maxCoeff(), cameras_[1].size_px.maxCoeff());
 }
 
 bool PairConsensus::fits(std::size_t pair, double together_px) const {
-  return together_px <=
-         std::max(sound_share * longest_px(), sound_times_alone * pairs_[pair].alone_px);
+  return fits(pairs_[pair], together_px);
+}
+
+bool PairConsensus::fits(const ViewPair& pair, double together_px) const {
+  return together_px <= std::max(sound_share * longest_px(), sound_times_alone * pair.alone_px);
 }
 
 bool PairConsensus::is_gross_misfit(double together_px) const {

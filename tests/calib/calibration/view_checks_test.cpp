@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/board_observations.h"
@@ -142,6 +143,15 @@ TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
       error_output.find("of 13 frames agree on the pose between the two: their images are not "
                         "simultaneous"),
       std::string::npos)
+      << error_output;
+}
+
+TEST_P(ViewChecks, ImagesExchangedBetweenTwoFramesAreNamed) {
+  std::swap(test::view_of(good_, 2, 1).pixels_px, test::view_of(good_, 9, 1).pixels_px);
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(
+      error_output.find("frame 2, camera 1 and frame 9, camera 1: each belongs to the other frame"),
+      0u)
       << error_output;
 }
 

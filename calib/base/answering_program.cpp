@@ -75,9 +75,14 @@ bool AnsweringProgram::ask(const std::function<std::string()>& question,
   ++failures_;
   if (!program_) return false;
   std::string line;
-  const Outcome outcome = program_->ask(question(), time_limit_s_, line);
+  const std::string asked = question();
+  bool out_of_turn = program_->has_printed_more();
+  const Outcome outcome = out_of_turn ? Outcome::line : program_->ask(asked, time_limit_s_, line);
   failure_ = fault(outcome, time_limit_s_, *program_);
-  if (outcome == Outcome::line) {
+  out_of_turn = out_of_turn || (outcome == Outcome::line && program_->has_printed_more());
+  if (out_of_turn) {
+    failure_ = "prints more than one line for a question, so that answers and questions part";
+  } else if (outcome == Outcome::line) {
     try {
       take(line);
       failures_ = 0;

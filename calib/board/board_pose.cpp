@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -125,6 +127,56 @@ BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
   }
   fit.rms_px = std::sqrt(now.chi2 / now.residuals);
   return fit;
+}
+
+Pose mirrored_board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                         const BoardView& view,
+                         const Pose& T_camera_board) {
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+  for (const int id : view.ids) centre_m += target_m[id] / static_cast<double>(view.ids.size());
+  const Eigen::Vector3d c = T_camera_board * centre_m, sight = c.normalized();
+  const Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity() - 2 * sight * sight.transpose();
+  Pose other;
+  other.R = mirror * T_camera_board.R * Eigen::Vector3d(1, 1, -1).asDiagonal();
+  other.t = c - other.R * centre_m;
+  return other;
+}
+
+BoardPoseFit fit_board_pose_both_ways(const std::vector<Eigen::Vector3d>& target_m,
+                                      const BoardView& view,
+                                      const Rig& one,
+                                      const Pose& start,
+                                      int max_iterations) {
+  const std::span<const BoardView> views(&view, 1);
+  const BoardPoseFit fit = fit_board_pose(target_m, views, one, start, max_iterations);
+  const BoardPoseFit other = fit_board_pose(
+      target_m, views, one, mirrored_board_pose(target_m, view, fit.T_first_board), max_iterations);
+  return other.rms_px < fit.rms_px ? other : fit;
+}
+
+BoardPoseFit find_board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                             std::span<const BoardView> views,
+                             const Rig& rig,
+                             int max_iterations) {
+  BoardPoseFit best{{}, std::numeric_limits<double>::infinity()};
+  std::optional<Error> misfit;
+  for (const BoardView& view : views) {
+    try {
+      const Pose alone = board_pose(target_m, view, rig.cameras[view.camera]);
+      for (const Pose& start : {alone, mirrored_board_pose(target_m, view, alone)}) {
+        const BoardPoseFit fit =
+            fit_board_pose(target_m, views, rig, rig.T_camera_first[view.camera].inverse() * start,
+                           max_iterations);
+        if (fit.rms_px < best.rms_px) best = fit;
+      }
+    } catch (const Error& error) {
+      misfit = error;
+    }
+  }
+  if (std::isfinite(best.rms_px)) return best;
+  if (misfit) throw *misfit;
+  throw Error("frame " + std::to_string(views.front().frame), "no board pose fits its corners",
+              "leave the frame out");
 }
 
 }  // namespace vernier::internal

@@ -32,4 +32,26 @@ BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
                             const Pose& start,
                             int max_iterations = 10);
 
+/// The board's mirror image in the plane through the centre of the seen corners, across the line of
+/// sight, turned face to the camera: under weak perspective it projects to the same pixels
+/// (Schweighofer and Pinz, Robust Pose Estimation from a Planar Target, PAMI 28, 2006).
+Pose mirrored_board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                         const BoardView& view,
+                         const Pose& T_camera_board);
+
+/// The better of the fits to one view from a start and from its mirror image. The view is of
+/// camera 0 of a rig of one camera.
+BoardPoseFit fit_board_pose_both_ways(const std::vector<Eigen::Vector3d>& target_m,
+                                      const BoardView& view,
+                                      const Rig& one,
+                                      const Pose& start,
+                                      int max_iterations = 10);
+
+/// The best fit to all views of a frame, started from each view alone and its mirror image. Throws
+/// Error if no pose fits.
+BoardPoseFit find_board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                             std::span<const BoardView> views,
+                             const Rig& rig,
+                             int max_iterations = 20);
+
 }  // namespace vernier::internal

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/board/board_pose.h"
 #include "calib/board/board_warp.h"
@@ -100,7 +101,14 @@ double estimated_sigma(const Solution& s) {
 /// model is not mistaken for wrong corners. Least squares then starts at the robust minimum of the
 /// requested model, since without outliers plain least squares may reach another local minimum.
 void reject_outliers(Solution& s, const CalibrationOptions& options) {
-  const std::optional<BoardState> robust = robust_minimum(s.observations, s.state, s.problem);
+  std::optional<BoardState> robust = robust_minimum(s.observations, s.state, s.problem);
+  if (robust && place_outlying_boards(s.observations, *robust)) {
+    ReprojectionProblem again = s.problem;
+    again.must_converge = false;
+    s.state = minimise_reprojection(s.observations, *robust, again);
+    robust = robust_minimum(s.observations, s.state, s.problem);
+    if (!robust) s.state = minimise_reprojection(s.observations, s.state, s.problem);
+  }
   if (!robust) return;
   RobustFit fit = outliers_at(s.observations, *robust);
   if (fit.outliers.empty()) return;
@@ -121,8 +129,39 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   s.outliers = std::move(fit.outliers);
 }
 
+/// The minimum of the frames that nothing is held against, with the boards of the others placed for
+/// it: a frame with a gross error may keep least squares from converging. Returns whether there are
+/// such frames, and enough others.
+bool begin_without_doubted_frames(Solution& s) {
+  const std::vector<int> sound = frames_without(s.diagnosis.frame_doubts, s.state.frames);
+  if (sound.size() == s.state.frames.size() || 2 * sound.size() < s.state.frames.size()) {
+    return false;
+  }
+  try {
+    const BoardState start = minimise_reprojection(at_frames(s.observations, sound),
+                                                   at_frames(s.state, sound), s.problem);
+    s.state.rig = start.rig;
+    s.state.warp_m = start.warp_m;
+    replace_poses(s.state, start);
+    const auto target_m = warped_target(s.observations.target_m, start.warp_m);
+    for (const FrameDoubt& doubt : s.diagnosis.frame_doubts) {
+      const std::vector<BoardView> views = at_frames(s.observations, {doubt.frame}).views;
+      s.state.T_first_board[frame_index(s.state.frames, doubt.frame)] =
+          find_board_pose(target_m, views, start.rig).T_first_board;
+    }
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
 /// From the start to the minimum, outliers excluded.
 void descend(Solution& s, const CalibrationOptions& options) {
+  if (options.reject_outliers && begin_without_doubted_frames(s)) {
+    reject_outliers(s, options);
+    if (s.outliers.empty()) s.state = minimise_reprojection(s.observations, s.state, s.problem);
+    return;
+  }
   try {
     s.state = minimise_reprojection(s.observations, s.state, s.problem);
   } catch (const Error&) {
@@ -132,7 +171,7 @@ void descend(Solution& s, const CalibrationOptions& options) {
     hasty.must_converge = false;
     s.state = minimise_reprojection(s.observations, s.state, hasty);
     reject_outliers(s, options);
-    if (s.outliers.empty()) throw;
+    if (s.outliers.empty()) s.state = minimise_reprojection(s.observations, s.state, s.problem);
     return;
   }
   if (options.reject_outliers) reject_outliers(s, options);
@@ -160,10 +199,12 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
     descend(s, options);
     linearise(s);
   } catch (const Error& error) {  // the earlier findings may be the reason
-    if (s.diagnosis.trust_warnings.empty()) throw;
+    std::vector<std::string> before = s.diagnosis.trust_warnings;
+    for (const FrameDoubt& doubt : s.diagnosis.frame_doubts) before.push_back(doubt.text);
+    if (before.empty()) throw;
     throw Error(error.place(),
                 fmt::format("{}, perhaps because of what was seen before: {}", error.fault(),
-                            fmt::join(s.diagnosis.trust_warnings, "; ")),
+                            fmt::join(before, "; ")),
                 error.remedy());
   }
   if (options.pixel_sigma_px > 0) return s;
@@ -221,6 +262,8 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   measure_outliers(s.observations.target_m, s.state, summary.outliers);
   summary.warnings = s.diagnosis.warnings;
   summary.trust_warnings = s.diagnosis.trust_warnings;
+  const auto frames = unrefuted(s.diagnosis.frame_doubts, s.observations, s.state, s.outliers);
+  summary.trust_warnings.insert(summary.trust_warnings.end(), frames.begin(), frames.end());
   if (summary.rms_px > largest_corner_noise_px) {
     summary.trust_warnings.push_back(residual_warning(s, summary.rms_px, options.check_input));
   }

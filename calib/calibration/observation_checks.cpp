@@ -207,6 +207,7 @@ void ObservationDiagnosis::add(const ObservationDiagnosis& more) {
   warnings.insert(warnings.end(), more.warnings.begin(), more.warnings.end());
   trust_warnings.insert(trust_warnings.end(), more.trust_warnings.begin(),
                         more.trust_warnings.end());
+  frame_doubts.insert(frame_doubts.end(), more.frame_doubts.begin(), more.frame_doubts.end());
 }
 
 std::string view_label(const BoardView& view) {

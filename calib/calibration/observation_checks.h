@@ -10,10 +10,17 @@
 
 namespace vernier::internal {
 
+/// A frame that seems wrong at an approximate start.
+struct FrameDoubt {
+  int frame = 0;
+  std::string text;  ///< as a trust warning
+};
+
 /// Findings about observations that do not prove them wrong.
 struct ObservationDiagnosis {
   std::vector<std::string> warnings;        ///< for information; the result is valid
   std::vector<std::string> trust_warnings;  ///< the result may be wrong, and what to do
+  std::vector<FrameDoubt> frame_doubts;     ///< trust warnings, unless the solution refutes them
 
   void add(const ObservationDiagnosis& more);
 };

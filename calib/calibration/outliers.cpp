@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "calib/board/board_pose.h"
 #include "calib/board/board_warp.h"
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
@@ -228,6 +229,32 @@ std::optional<BoardState> robust_minimum(const BoardObservations& observations,
     return {};
   }
   return redescending_minimum(observations, state, problem, limit);
+}
+
+bool place_outlying_boards(const BoardObservations& observations, BoardState& state, double limit) {
+  const auto flags = outlier_flags(observations, state, limit);
+  std::set<int> frames;
+  for (std::size_t v = 0; v < flags.size(); ++v) {
+    if (2 * std::count(flags[v].begin(), flags[v].end(), true) >
+        static_cast<std::ptrdiff_t>(flags[v].size())) {
+      frames.insert(observations.views[v].frame);
+    }
+  }
+  const auto target_m = warped_target(observations.target_m, state.warp_m);
+  bool moved = false;
+  for (const int frame : frames) {
+    const std::vector<BoardView> views = at_frames(observations, {frame}).views;
+    Pose& T_first_board = state.T_first_board[frame_index(state.frames, frame)];
+    const double rms_px = fit_board_pose(target_m, views, state.rig, T_first_board, 0).rms_px;
+    try {
+      const BoardPoseFit found = find_board_pose(target_m, views, state.rig);
+      if (!(found.rms_px < 0.5 * rms_px)) continue;
+      T_first_board = found.T_first_board;
+      moved = true;
+    } catch (const Error&) {  // an outlier it stays
+    }
+  }
+  return moved;
 }
 
 RobustFit outliers_at(const BoardObservations& observations,

@@ -40,6 +40,13 @@ std::optional<BoardState> robust_minimum(const BoardObservations& observations,
                                          const ReprojectionProblem& problem,
                                          double limit = 6);
 
+/// Frames whose board is in a wrong local minimum at `state`: those with an outlying view (below)
+/// get the pose that fits all their views best, with the rig as it is, if it halves their rms.
+/// Returns whether there was one.
+bool place_outlying_boards(const BoardObservations& observations,
+                           BoardState& state,
+                           double limit = 6);
+
 /// Outliers at `state`, and the state at the remaining frames; nothing is minimised.
 ///
 /// A corner is an outlier if its residual is longer than `limit` standard deviations: the larger of

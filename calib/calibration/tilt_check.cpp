@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <string>
 
 #include "calib/base/decompositions.h"
@@ -50,9 +49,8 @@ NormalsAlone normals_alone(const BoardObservations& observations,
   for (BoardView view : observations.views) {
     if (view.camera != camera) continue;
     view.camera = 0;
-    const BoardPoseFit fit =
-        fit_board_pose(observations.target_m, std::span(&view, 1), one,
-                       board_pose(observations.target_m, view, one.cameras[0]));
+    const BoardPoseFit fit = fit_board_pose_both_ways(
+        observations.target_m, view, one, board_pose(observations.target_m, view, one.cameras[0]));
     const Eigen::Vector3d normal = fit.T_first_board.R.col(2);
     result.normals.emplace_back(normal.z() < 0 ? Eigen::Vector3d(-normal) : normal);
     rms.push_back(fit.rms_px);

@@ -7,21 +7,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/observation_checks.h"
+#include "calib/calibration/outliers.h"
 #include "calib/calibration/tilt_check.h"
 #include "calib/calibration/view_pair.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -188,6 +193,7 @@ class PairCheck {
 
   void complain_of_frames(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
     std::vector<Repair> turned, exchanged;
+    std::vector<std::size_t> gross;
     for (std::size_t i = 0; i < as_is.fits.size(); ++i) {
       if (as_is.fits[i]) continue;
       const double together = consensus_.together_px(i, PairReading::as_is, as_is.rig);
@@ -200,15 +206,37 @@ class PairCheck {
       if (consensus_.has_half_turn_ambiguity() && repaired(PairReading::turned, turned)) continue;
       if (repaired(PairReading::exchanged, exchanged)) continue;
       if (!consensus_.is_gross_misfit(together)) continue;  // the solution will show
+      gross.push_back(i);
       const ViewPair& pair = consensus_.pairs()[i];
-      diagnosis.trust_warnings.push_back(fmt::format(
+      std::string doubt = fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
           "not simultaneous or the corners of one are numbered from another corner of the board; "
           "leave the frame out",
-          image_place(pair.second, second_), pair.alone_px, together));
+          image_place(pair.second, second_), pair.alone_px, together);
+      diagnosis.frame_doubts.push_back({pair.second.frame, std::move(doubt)});
     }
     if (!turned.empty()) throw_turned(turned, as_is.fits);
     if (!exchanged.empty()) throw_exchanged(exchanged);
+    complain_if_crossed(gross, as_is);
+  }
+
+  /// Two frames each of which fits with the second image of the other.
+  void complain_if_crossed(const std::vector<std::size_t>& gross, const Agreement& as_is) const {
+    const auto& pairs = consensus_.pairs();
+    for (std::size_t a = 0; a < gross.size(); ++a) {
+      for (std::size_t b = a + 1; b < gross.size(); ++b) {
+        const std::size_t i = gross[a], j = gross[b];
+        const double one_px = consensus_.crossed_px(i, j, as_is.rig);
+        const double other_px = consensus_.crossed_px(j, i, as_is.rig);
+        if (!consensus_.fits(i, one_px) || !consensus_.fits(j, other_px)) continue;
+        throw Error(fmt::format("{} and {}", image_place(pairs[i].second, second_),
+                                image_place(pairs[j].second, second_)),
+                    fmt::format("each belongs to the other frame (they fit to {:.0f} and {:.0f} px "
+                                "as they are, to {:.1f} and {:.1f} px exchanged)",
+                                as_is.together_px[i], as_is.together_px[j], one_px, other_px),
+                    "exchange the two images or leave both frames out");
+      }
+    }
   }
 
   [[noreturn]] void throw_turned(const std::vector<Repair>& repairs,
@@ -304,9 +332,48 @@ ObservationDiagnosis check_views(const BoardObservations& observations,
   for (int c = 1; !sound && c < static_cast<int>(start.rig.cameras.size()); ++c) {
     PairCheck(observations, start.rig, best_partner(observations, c), c).run(diagnosis);
   }
-  if (options.tilts) diagnosis.add(check_tilts(observations, start));
+  if (options.tilts) {
+    const std::vector<int> rest = frames_without(diagnosis.frame_doubts, start.frames);
+    diagnosis.add(check_tilts(at_frames(observations, rest), at_frames(start, rest)));
+  }
   check_baseline(start, diagnosis);
   return diagnosis;
+}
+
+std::vector<int> frames_without(const std::vector<FrameDoubt>& doubts,
+                                const std::vector<int>& frames) {
+  std::vector<int> sound = frames;
+  for (const FrameDoubt& doubt : doubts) std::erase(sound, doubt.frame);
+  return sound;
+}
+
+std::vector<std::string> unrefuted(const std::vector<FrameDoubt>& doubts,
+                                   const BoardObservations& inliers,
+                                   const BoardState& state,
+                                   const std::vector<CornerOutlier>& outliers) {
+  if (doubts.empty()) return {};
+  constexpr double usual = 2;  // times the median residual
+  const CornerResiduals residuals = corner_residuals(inliers, state);
+  std::map<int, double> worst_px;  // of a frame's views, their median residual
+  std::vector<double> medians_px;
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
+    std::vector<double> lengths_px;
+    for (const Eigen::Vector2d& r : residuals[v]) lengths_px.push_back(r.norm());
+    medians_px.push_back(median_or_zero(std::move(lengths_px)));
+    double& worst = worst_px[inliers.views[v].frame];
+    worst = std::max(worst, medians_px.back());
+  }
+  const double most_px = usual * median_or_zero(medians_px);
+  std::vector<std::string> texts;
+  for (const FrameDoubt& doubt : doubts) {
+    const auto own = worst_px.find(doubt.frame);
+    const bool fits =
+        own != worst_px.end() && own->second <= most_px &&
+        std::none_of(outliers.begin(), outliers.end(),
+                     [&](const CornerOutlier& corner) { return corner.frame == doubt.frame; });
+    if (!fits) texts.push_back(doubt.text);
+  }
+  return texts;
 }
 
 }  // namespace vernier::internal

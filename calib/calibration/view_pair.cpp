@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "calib/base/decompositions.h"
@@ -80,8 +80,8 @@ PairConsensus::PairConsensus(
       alone.camera = 0;
       const Rig one{{cameras_[side->camera]}, {Pose{}}};
       const BoardPoseFit fit =
-          fit_board_pose(observations.target_m, std::span(&alone, 1), one,
-                         board_pose(observations.target_m, alone, one.cameras[0]), 6);
+          fit_board_pose_both_ways(observations.target_m, alone, one,
+                                   board_pose(observations.target_m, alone, one.cameras[0]), 6);
       (side->camera == 0 ? pair.T_first_board : pair.T_second_board) = fit.T_first_board;
       pair.alone_px = std::max(pair.alone_px, fit.rms_px);
     }
@@ -104,16 +104,37 @@ ViewPair PairConsensus::read(const ViewPair& pair, PairReading reading) const {
 }
 
 BoardPoseFit PairConsensus::together(std::size_t index, PairReading reading, const Rig& rig) const {
-  const ViewPair pair = read(pairs_[index], reading);
+  return together(read(pairs_[index], reading), rig);
+}
+
+BoardPoseFit PairConsensus::together(const ViewPair& pair, const Rig& rig) const {
   const std::array views{pair.first, pair.second};
-  const Pose by_second = rig.T_camera_first[1].inverse() * pair.T_second_board;
-  const BoardPoseFit a = fit_board_pose(observations_.target_m, views, rig, pair.T_first_board, 15);
-  const BoardPoseFit b = fit_board_pose(observations_.target_m, views, rig, by_second, 15);
-  return b.rms_px < a.rms_px ? b : a;
+  const Pose T_first_second = rig.T_camera_first[1].inverse();
+  const auto& target_m = observations_.target_m;
+  BoardPoseFit best{{}, std::numeric_limits<double>::infinity()};
+  const auto consider = [&](const Pose& first, const Pose& second) {
+    for (const Pose& start : {first, T_first_second * second}) {
+      const BoardPoseFit fit = fit_board_pose(target_m, views, rig, start, 15);
+      if (fit.rms_px < best.rms_px) best = fit;
+    }
+  };
+  consider(pair.T_first_board, pair.T_second_board);
+  if (fits(pair, best.rms_px)) return best;
+  // noise may have decided on which side of the line of sight the board is tilted
+  consider(mirrored_board_pose(target_m, pair.first, pair.T_first_board),
+           mirrored_board_pose(target_m, pair.second, pair.T_second_board));
+  return best;
 }
 
 double PairConsensus::together_px(std::size_t pair, PairReading reading, const Rig& rig) const {
   return together(pair, reading, rig).rms_px;
+}
+
+double PairConsensus::crossed_px(std::size_t first, std::size_t second, const Rig& rig) const {
+  ViewPair pair = pairs_[first];
+  pair.second = pairs_[second].second;
+  pair.T_second_board = pairs_[second].T_second_board;
+  return together(pair, rig).rms_px;
 }
 
 double PairConsensus::longest_px() const {
@@ -121,8 +142,11 @@ double PairConsensus::longest_px() const {
 }
 
 bool PairConsensus::fits(std::size_t pair, double together_px) const {
-  return together_px <=
-         std::max(sound_share * longest_px(), sound_times_alone * pairs_[pair].alone_px);
+  return fits(pairs_[pair], together_px);
+}
+
+bool PairConsensus::fits(const ViewPair& pair, double together_px) const {
+  return together_px <= std::max(sound_share * longest_px(), sound_times_alone * pair.alone_px);
 }
 
 bool PairConsensus::is_gross_misfit(double together_px) const {

@@ -50,9 +50,13 @@ class PairConsensus {
   /// both images.
   double together_px(std::size_t pair, PairReading reading, const Rig& rig) const;
 
+  /// The same of the first image of one frame with the second image of another.
+  double crossed_px(std::size_t first, std::size_t second, const Rig& rig) const;
+
   /// Whether the residual is at most that of a correct frame at an approximate start: four times
   /// that of each image alone, or 0.6 % of the image's longer side.
   bool fits(std::size_t pair, double together_px) const;
+  bool fits(const ViewPair& pair, double together_px) const;
 
   /// Whether the residual is too large for an approximate start: more than 1.5 % of the image's
   /// longer side.
@@ -66,6 +70,7 @@ class PairConsensus {
   };
   ViewPair read(const ViewPair& pair, PairReading reading) const;
   BoardPoseFit together(std::size_t pair, PairReading reading, const Rig& rig) const;
+  BoardPoseFit together(const ViewPair& pair, const Rig& rig) const;
   Half best_subset(PairReading reading, const Rig& rig) const;
   static std::optional<Rig> improved(const Half& half, const std::vector<int>& free);
   double longest_px() const;

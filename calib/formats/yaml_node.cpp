@@ -23,6 +23,10 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 }  // namespace
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] == '<') {
+    throw Error(file, "is XML, which is not read", "write it as YAML (cv::FileStorage: name.yml)");
+  }
   auto root = std::make_shared<const YamlValue>(parse_yaml(text, file));
   if (root->kind != YamlValue::Kind::map) throw Error(file, "holds no keys", "name another file");
   return {std::move(root), file, ""};

@@ -59,7 +59,19 @@ class OneCamera {
     for (const BoardView& view : views_) {
       guess.T_camera_board.push_back(board_pose(target_m_, view, camera));
     }
-    return with_refined_poses(std::move(guess), 4);
+    return turned_over(std::move(guess), 4);
+  }
+
+  /// With refined poses, each from its start or from its mirror image, whichever fits better.
+  InitialCamera turned_over(InitialCamera guess, int iterations) const {
+    const Rig rig{{guess.camera}, {Pose{}}};
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      guess.T_camera_board[i] =
+          fit_board_pose_both_ways(target_m_, views_[i], rig, guess.T_camera_board[i], iterations)
+              .T_first_board;
+    }
+    guess.typical_rms_px = typical(residuals(guess));
+    return guess;
   }
 
   InitialCamera with_refined_poses(InitialCamera guess, int iterations) const {
@@ -135,7 +147,8 @@ class OneCamera {
   std::vector<BoardView> views_;
 };
 
-/// Improves f and k1, then also ax and k2, as far as the model has them, then all parameters.
+/// Improves f and k1, then also ax and k2, as far as the model has them, then all parameters. A
+/// better camera tells better on which side of the line of sight a board is tilted.
 InitialCamera improve(const OneCamera& views, InitialCamera guess) {
   constexpr int f = 0, ax = 1, k1 = core_parameter_count;
   const int last = static_cast<int>(guess.camera.parameters.size()) - 1;
@@ -153,6 +166,7 @@ InitialCamera improve(const OneCamera& views, InitialCamera guess) {
       guess = *next;
       if (settled) break;
     }
+    guess = views.turned_over(std::move(guess), 6);
   }
   return guess;
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
@@ -57,6 +58,29 @@ Rig cameras_alone(const BoardObservations& observations,
     rig.cameras.back().name = camera_name(c);
   }
   return rig;
+}
+
+/// Frames that fit worse than usual get the pose that fits all their views best: a single view with
+/// little perspective leaves open on which side of the line of sight the board is tilted.
+void place_again(const BoardObservations& observations, BoardState& state) {
+  constexpr double unusual = 1.5;  // times the median residual
+  std::vector<double> rms_px;
+  std::vector<std::vector<BoardView>> views;
+  for (std::size_t f = 0; f < state.frames.size(); ++f) {
+    views.push_back(at_frames(observations, {state.frames[f]}).views);
+    const BoardPoseFit fit =
+        fit_board_pose(observations.target_m, views[f], state.rig, state.T_first_board[f], 5);
+    rms_px.push_back(fit.rms_px);
+  }
+  const double usual_px = middle(rms_px);
+  for (std::size_t f = 0; f < state.frames.size(); ++f) {
+    if (rms_px[f] <= unusual * usual_px) continue;
+    try {
+      const BoardPoseFit found = find_board_pose(observations.target_m, views[f], state.rig, 5);
+      if (found.rms_px < rms_px[f]) state.T_first_board[f] = found.T_first_board;
+    } catch (const Error&) {  // the pose stays
+    }
+  }
 }
 
 }  // namespace
@@ -119,6 +143,7 @@ BoardState initial_state(const BoardObservations& observations,
     }
   }
   for (std::size_t f = 0; f < placed.size(); ++f) state.T_first_board[f] = *placed[f];
+  place_again(observations, state);
   return state;
 }
 

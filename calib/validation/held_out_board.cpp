@@ -72,8 +72,7 @@ FrameRows HeldOutBoard::rows(const RigEstimate& estimate) const {
   const Eigen::Vector2d warp_m =
       estimate.evidence ? estimate.evidence->warp_m : Eigen::Vector2d::Zero();
   const auto target_m = warped_target(observations_.target_m, warp_m);
-  const Pose start = board_pose(target_m, views.views.front(), estimate.rig.cameras[0]);
-  const Pose pose = fit_board_pose(target_m, views.views, estimate.rig, start, 20).T_first_board;
+  const Pose pose = find_board_pose(target_m, views.views, estimate.rig).T_first_board;
   const Eigen::MatrixXd no_rig(parameter_count(estimate.rig), 0);
   return frame_rows(views, {estimate.rig, {frame_}, {pose}, warp_m}, no_rig)[0];
 }

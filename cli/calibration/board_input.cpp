@@ -3,7 +3,9 @@
 #include "cli/calibration/board_input.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <utility>
@@ -32,8 +34,14 @@ std::vector<Eigen::Vector2i> size_of(const BoardInput& input) {
   if (input.size.empty()) {
     throw Error(input.verb, "image size missing", "give --size, for example 640x480");
   }
-  const auto [width, height] = parse_size(input.size, "--size");
-  return {{width, height}};
+  std::vector<Eigen::Vector2i> sizes;
+  for (std::size_t at = 0; at <= input.size.size();) {
+    const std::size_t end = std::min(input.size.find(',', at), input.size.size());
+    const auto [width, height] = parse_size(input.size.substr(at, end - at), "--size");
+    sizes.emplace_back(width, height);
+    at = end + 1;
+  }
+  return sizes;
 }
 
 double length(const BoardInput& input, double metres, const std::string& option) {
@@ -146,7 +154,8 @@ void add_board_options(CLI::App* verb, BoardInput& input) {
   verb->add_option("--observations", input.observations,
                    "CSV frame,camera,row,col,X,Y,Z,qx,qy (metres, pixels)");
   verb->add_option("--size", input.size,
-                   "image size, such as 640x480 (for --corners and --observations)");
+                   "image size, such as 640x480, or one for each camera: 640x480,960x720 (for "
+                   "--corners and --observations)");
 }
 
 std::vector<std::string> image_patterns(const BoardInput& input) {

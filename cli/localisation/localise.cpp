@@ -48,6 +48,18 @@ double thread_cpu_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
+/// Whether the method compares views in the images of two cameras.
+bool needs_pair(const std::string& method) { return method == "lines" || method == "corners"; }
+
+/// Throws Error for a view of one camera with depths, which such a method cannot use.
+void check_pair(const PlaceView& view, const LocaliseArguments& options, const std::string& place) {
+  if (!needs_pair(options.method) || !view.rig || view.rig->cameras.size() >= 2) return;
+  throw Error(place,
+              "is of one camera with depths, and --method " + options.method +
+                  " compares the images of two",
+              "give --method pgh");
+}
+
 std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
                                              const TopologicalMap& map,
                                              const Localiser& localiser,
@@ -58,8 +70,9 @@ std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
     const RecordedLooks& seen = recorded.views[i];
     const PlaceView& first = seen.looks[0].view;
     if (first.rig) {
+      check_pair(first, options, options.views.features + ": " + recorded.names[i]);
       check_same_rig(map, *first.rig, options.map);
-    } else if (options.method == "lines" || options.method == "corners") {
+    } else if (needs_pair(options.method)) {
       throw Error(options.views.features, recorded.names[i] + " has no cameras",
                   "give --rig, or \"cameras\" with each view");
     }
@@ -139,6 +152,7 @@ void run(LocaliseArguments options, const CLI::App& verb, Session& session) {
   check(options, verb);
   options.views.corners = options.views.corners || needs_corners(options.method, options.localiser);
   const TopologicalMap map = read_map(options.map);
+  for (const MapNode& node : map.nodes) check_pair(node.view, options, options.map);
   check_corners(map, options);
   options.localiser.stages = localiser_stages(options.stages);
   const auto localiser = make_localiser(options.method, map, options.localiser);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -30,6 +31,7 @@
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
 #include "sim/study/study.h"
+#include "sim/world.h"
 
 namespace vernier::cli {
 namespace {
@@ -119,12 +121,27 @@ std::vector<std::string> names_of(const std::vector<LoadedStudy>& studies) {
   return names;
 }
 
+/// The worlds of the cells, each once and named in its cells by its number, if there are several.
+void add_worlds(const Study& study, Json& part) {
+  std::map<const World*, std::size_t> numbers;
+  Json worlds = Json::array();
+  for (std::size_t i = 0; i < study.file.cells.size(); ++i) {
+    const World& world = world_of(study, study.file.cells[i]);
+    const auto [known, is_new] = numbers.emplace(&world, worlds.size());
+    if (is_new) worlds.push_back(report_world(world));
+    part["study"]["cells"][i]["world"] = known->second;
+  }
+  if (worlds.size() > 1) part["worlds"] = std::move(worlds);
+}
+
 /// What the page says of one study.
 Json study_part(const LoadedStudy& loaded, const std::string& name) {
-  return {{"name", name},
-          {"study", report_study(loaded.study, loaded.results)},
-          {"world", report_world(loaded.study.world)},
-          {"view", report_view(loaded.study)}};
+  Json part{{"name", name},
+            {"study", report_study(loaded.study, loaded.results)},
+            {"world", report_world(loaded.study.world)},
+            {"view", report_view(loaded.study)}};
+  add_worlds(loaded.study, part);
+  return part;
 }
 
 /// One study makes the page; several stand below each other. A rig of several is shown once.
@@ -138,7 +155,9 @@ void add_studies(const std::vector<LoadedStudy>& studies,
     const LoadedStudy& loaded = studies[i];
     Json part = study_part(loaded, names[i]);
     if (studies.size() == 1) {
-      for (const char* key : {"study", "world", "view"}) data[key] = std::move(part[key]);
+      for (const char* key : {"study", "world", "worlds", "view"}) {
+        if (part.contains(key)) data[key] = std::move(part[key]);
+      }
     } else {
       data["studies"].push_back(std::move(part));
     }

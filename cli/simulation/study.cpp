@@ -41,6 +41,7 @@ void print(const Study& study, const fs::path& folder, Session& session) {
   const StudyResults results = study_results(study, folder, 0);
   tell_failed_trials(results, session);
   tell_failed_calibrations(results, session);
+  tell_understated_errors(results, session);
   session.result(study_json(study, results), study_table(study, results));
 }
 

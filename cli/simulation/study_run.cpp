@@ -4,13 +4,17 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "calib/interval.h"
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "sim/sources.h"
+#include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/told/fresh_calibrations.h"
 
@@ -81,6 +85,28 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
                           sources.calibration)
             : "vernier localise with the same settings says why"));
   }
+}
+
+void tell_understated_errors(const StudyResults& results, Session& session) {
+  std::string first;
+  int cells = 0;
+  for (const CellResult& cell : results.cells) {
+    const CellSummary& s = cell.summary;
+    if (cell.stated.reliability().empty()) continue;  // states nothing
+    const int answers = static_cast<int>(std::lround(s.coverage * s.trials));
+    const int wrong = answers - static_cast<int>(std::lround(s.success * s.trials));
+    const double stated = cell.cell.experiment.localiser.max_error_rate;
+    if (answers == 0 || clopper_pearson_interval(wrong, answers, 0.98).low <= 2 * stated) continue;
+    if (++cells > 1) continue;
+    first =
+        fmt::format("{} of {} answers of cell \"{}\" are wrong, where the localiser states {:g} %",
+                    wrong, answers, cell.cell.label, 100 * stated);
+  }
+  if (cells == 0) return;
+  session.warn(fmt::format(
+      "{}{}: what it states does not hold there, as in a building that repeats or for a rig that "
+      "is far off",
+      first, cells > 1 ? fmt::format(", and so in {} more cells", cells - 1) : ""));
 }
 
 void tell_failed_calibrations(const StudyResults& results, Session& session) {

@@ -22,6 +22,10 @@ void run_in_folder(const FolderClaim& claim,
 /// calibration has.
 void tell_failed_trials(const StudyResults& results, Session& session);
 
+/// Says in which cells more answers are wrong than the localiser states, by more than chance: at
+/// least twice as many at 98 % confidence.
+void tell_understated_errors(const StudyResults& results, Session& session);
+
 /// Says which cells have not a single calibration to tell: a reason not to trust them.
 void tell_failed_calibrations(const StudyResults& results, Session& session);
 

@@ -132,11 +132,28 @@ std::string cells_table(const StudyResults& results, const CellFigures& figures)
   return text_table(std::move(columns));
 }
 
-std::string ceiling_line(const CellFigures& figures) {
+std::string shared_ceiling(const CellFigures& figures) {
   if (!is_shared(figures.ceilings) || !figures.ceilings[0]) return {};
   const WorldCeiling& c = *figures.ceilings[0];
   return fmt::format("world ceiling {:.1f} % {}, unaliased {:.1f} % of the queries\n",
                      100 * c.success, interval_text(c.success_interval_95), 100 * c.unaliased);
+}
+
+/// Whether a cell's success lies above its ceiling by more than chance.
+bool exceeds_ceiling(const CellSummary& s, const std::optional<WorldCeiling>& ceiling) {
+  return ceiling && s.success_interval_95 &&
+         s.success_interval_95->low > ceiling->success_interval_95.high;
+}
+
+std::string ceiling_line(const CellFigures& figures) {
+  std::string text = shared_ceiling(figures);
+  for (std::size_t i = 0; i < figures.summaries.size(); ++i) {
+    if (!exceeds_ceiling(figures.summaries[i], figures.ceilings[i])) continue;
+    return text +
+           "success exceeds the ceiling, to which all poses are equally likely: the map says "
+           "which headings are\n";
+  }
+  return text;
 }
 
 std::string worlds_table(const StudyResults& results) {

@@ -131,6 +131,16 @@ Mesh with_joined_faces(Mesh mesh) {
   return joined;
 }
 
+/// Whether a building may lie on its side if this axis, its shortest, is up: a corridor, whose
+/// walls are alike, level if it lies, and as few as floors.
+bool may_lie(const Eigen::Vector3d& size, int axis) {
+  constexpr double narrow = 2.5, corridor = 3;  // times the width
+  Eigen::Vector3d sorted = size;
+  std::sort(sorted.begin(), sorted.end());
+  return size[axis] == sorted[0] && sorted[1] < narrow * sorted[0] &&
+         sorted[2] > corridor * sorted[1];
+}
+
 /// The axis for which two of three signs speak: walls that begin and end alike and are low, level
 /// surface at few heights, and the shortest extent.
 int up_axis_by_look(const Mesh& file, const std::string& place) {
@@ -150,7 +160,7 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
     if (sign) ++votes[*sign];
   }
   for (int axis = 0; axis < 3; ++axis) {
-    if (votes[axis] >= 2) return axis;
+    if (votes[axis] >= 2 && !may_lie(high - low, axis)) return axis;
   }
   throw Error(place, "does not say which axis is up, and its shape does not show it",
               "say so with --up x, y or z");

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -144,6 +145,15 @@ class ServoDrive {
   Pose2D odometry_;
 };
 
+/// Those with an object, in quotes.
+std::string template_names(const World& world) {
+  std::set<std::string> names;
+  for (const WorldObject& object : world.objects) {
+    if (!object.template_name.empty()) names.insert('"' + object.template_name + '"');
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 std::string_view name(ServoGoal goal) { return goal_names.at(static_cast<std::size_t>(goal)); }
@@ -176,11 +186,16 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
     goals_.push_back(goal);
   }
   if (doors_.empty()) {
-    throw Error(options.door,
-                known ? fmt::format("has no free place {:g} m in front of it and behind that",
-                                    options.distance_m)
-                      : "is no template of an object in this world",
-                known ? "give another distance" : "name one, such as door_frame");
+    if (known) {
+      throw Error(options.door,
+                  fmt::format("has no free place {:g} m in front of it and behind that",
+                              options.distance_m),
+                  "give another distance");
+    }
+    const std::string names = template_names(world);
+    throw Error(options.door, "is no template of an object in this world",
+                names.empty() ? "it has none, as worlds that were imported: take one that has"
+                              : "name one of " + names);
   }
 }
 

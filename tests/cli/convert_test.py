@@ -129,6 +129,11 @@ class Convert(Case):
             self.complains('convert', self.out(name), '-o', self.out('r.json'),
                            of='binary form', leaves=[self.out('r.json')])
 
+    def test_xml_is_called_so(self):
+        self.out('r.xml').write_text('<?xml version="1.0"?>\n<opencv_storage></opencv_storage>\n')
+        self.complains('convert', self.out('r.xml'), '--from', 'opencv', '-o', self.out('r.json'),
+                       of='is XML, which is not read', leaves=[self.out('r.json')])
+
     def test_what_is_lost_is_said(self):
         done = self.works('convert', 'nominal', '--to', 'opencv', '--names', 'a,b', '-o',
                           self.out('r.yml'), '--json')

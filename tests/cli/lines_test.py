@@ -102,7 +102,8 @@ class Lines(verb_calls.ProgramCase):
         # the method that compares lines in the image of a pair says that there is none
         run = self.run_program('localise', 'out.map', '--features', 'out.jsonl')
         self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn('two cameras', run.stderr)
+        self.assertIn('out.map: is of one camera with depths', run.stderr)
+        self.assertIn('give --method pgh', run.stderr)
 
     def test_the_same_to_the_bit_and_without_poses(self):
         for name in ('a.jsonl', 'b.jsonl'):

@@ -75,6 +75,26 @@ class Report(unittest.TestCase):
             self.assertEqual(len(part['study']['commands']), 1)
         self.assertEqual(data['program']['machine'], machine)
 
+    def test_cells_of_several_worlds_have_each_its_own(self):
+        for seed, size in ((1, '10,8,2.5'), (2, '14,10,2.5')):
+            self.works('world', 'make', '--seed', str(seed), '--size-m', size, '-o', f'{seed}.world.toml')
+        (self.folder / 'small.toml').write_text(
+            STUDY + '[sweep]\n"world.file" = ["1.world.toml", "2.world.toml"]\n"sources.calibration" = [1, 2]\n')
+        self.works('study', 'small.toml', '-o', 'out', '-q')
+        self.works('report', 'out', '--no-proof', '-o', 'report.html')
+        data = self.data()
+        self.assertEqual(len(data['worlds']), 2)
+        for cell in data['study']['cells']:
+            world = data['worlds'][cell['world']]
+            seed = cell['swept']['world.file'][0]
+            self.assertEqual(max(x for s in world['segments'] for x in (s[0], s[3])), {'1': 10, '2': 14}[seed])
+            for query in cell['trial_list']:
+                self.assertLess(query[1], {'1': 10, '2': 14}[seed])
+        (self.folder / 'one.toml').write_text(STUDY)
+        self.works('study', 'one.toml', '-o', 'one', '-q')
+        self.works('report', 'one', '--no-proof', '-o', 'report.html')
+        self.assertNotIn('worlds', self.data())
+
     def test_figures_for_papers(self):
         (self.folder / 'grid.toml').write_text(STUDY + '''[sweep]
 "sources.calibration" = [0.1, 10]

@@ -23,7 +23,9 @@ class Corners(cli_test.Case):
         return ('--observations', self.folder / 'o.csv', '--size', '640x480')
 
     def calibrate(self, *more, frames=12, code=0):
-        done = vernier('calibrate', *self.corners(frames), '-o', self.folder / 'rig.json', *more)
+        corners = self.corners(frames)
+        words = corners[:2] if '--size' in more else corners
+        done = vernier('calibrate', *words, '-o', self.folder / 'rig.json', *more)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -36,6 +38,13 @@ class Result(Corners):
         text = self.calibrate('--warp', '--no-model-check').stdout
         self.assertIn(f'board warp: {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
         self.assertNotIn('board warp', self.calibrate('--no-model-check').stdout)
+
+    def test_cameras_may_differ_in_size(self):
+        self.calibrate('--no-model-check', '--size', '640x480,660x500')
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertEqual([camera['size_px'] for camera in rig['cameras']], [[640, 480], [660, 500]])
+        done = self.calibrate('--size', '640x480,', code=2)
+        self.assertIn('use the form 640x480', done.stderr)
 
     def test_a_held_parameter_is_called_so(self):
         hold = ('--hold', 'left.ax=1', '--no-model-check')
@@ -189,6 +198,46 @@ class WrongThing(cli_test.Case):
     def test_the_table_says_where_its_corners_are(self):
         text = self.works('uncertainty', 'nominal', '--samples', '50', '--grid', '4x3').stdout
         self.assertIn("10 % of the image width and height inwards from the corner", text)
+
+
+SURE = '''import json, sys
+hello = json.loads(sys.stdin.readline())
+nodes = [json.loads(sys.stdin.readline()) for _ in range(hello['nodes'])]
+print('{"ready": true}', flush=True)
+for line in sys.stdin:
+    print(json.dumps({'status': 'answered', 'node': 0, 'pose': nodes[0]['pose'], 'score': 1, %s}), flush=True)
+'''
+STUDY = '''[study]
+trials = 40
+protocol = "near_path"
+[map]
+spacing_m = 4
+[localiser]
+method = "program"
+command = "python3 sure.py"
+[sweep]
+"study.seed" = [1, 2]
+'''
+
+
+class Study(cli_test.Case):
+    def run_sure(self, stated):
+        (self.folder / 'sure.py').write_text(SURE % stated)
+        (self.folder / 's.toml').write_text(STUDY)
+        shutil.rmtree(self.folder / 'out', ignore_errors=True)
+        done = vernier('study', 's.toml', '-o', 'out', '--threads', '1', cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_more_wrong_answers_than_stated_are_said(self):
+        done = self.run_sure("'probability': 0.9999")
+        self.assertRegex(done.stderr, r'warning: \d+ of 40 answers of cell "study.seed = 1" are wrong, where the '
+                                      r'localiser states 1 %, and so in 1 more cells: what it states does not hold')
+        again = vernier('study', 'status', 'out', cwd=self.folder)
+        self.assertIn('are wrong, where the localiser states 1 %', again.stderr)
+
+    def test_who_states_nothing_is_not_held_to_it(self):
+        self.assertNotIn('are wrong', self.run_sure("'looks': 1").stderr)
 
 
 if __name__ == '__main__':

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <string>
+#include <thread>
 
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -48,6 +49,28 @@ std::string python(const Folder& folder, const std::string& with_query) {
       "    " +
       with_query + "\n";
   return "python3 '" + folder.write("program.py", program).string() + "'";
+}
+
+// A second line would be taken for the answer to the next question.
+TEST(ProgramLocaliser, MayPrintOneLineForAQuestion) {
+  const TopologicalMap map = five_rooms();
+  const Folder folder;
+  const std::string answer = R"(print('{"status": "unsure"}', flush=True))";
+  const auto twice =
+      make_localiser("program", map, running(python(folder, answer + "; " + answer)));
+  for (int i = 0; i < 2; ++i) {
+    const LocalisationAnswer said = twice->localise(map.nodes[i].view);
+    EXPECT_EQ(said.status, LocalisationStatus::failed);
+    EXPECT_NE(said.failure.find("prints more than one line for a question"), std::string::npos)
+        << said.failure;
+  }
+  // also if it comes late
+  const auto late = make_localiser(
+      "program", map,
+      running(python(folder, answer + "; time.sleep(0.05 if number == 0 else 0); " + answer)));
+  EXPECT_NE(late->localise(map.nodes[0].view).status, LocalisationStatus::answered);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(late->localise(map.nodes[1].view).status, LocalisationStatus::failed);
 }
 
 TEST(ProgramLocaliser, WorksAsTheManualSays) {

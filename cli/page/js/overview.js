@@ -4,6 +4,7 @@ import { paragraph, section, small, table } from "./elements.js";
 import { DASH, count, metres, percent, range_percent } from "./format.js";
 import { figure } from "./plot.js";
 import { multiples_height, multiples_plot } from "./small_multiples.js";
+import { world_of } from "./study.js";
 import { success_of } from "./sweep.js";
 import { swept_keys } from "./sweep_layout.js";
 
@@ -31,8 +32,8 @@ export function overview_section(studies) {
     { head: "Success", small: "95 % interval", cell: ({ cell }) => [percent(cell.success),
       cell.success_interval_95 && small(range_percent(cell.success_interval_95))] },
     { head: "Error", small: "median", cell: ({ cell }) => metres(cell.median_error_m) },
-  ], studies.flatMap(({ name, study, world }) => study.cells.map((cell) =>
-    ({ study: name, world: world?.name, cell })))));
+  ], studies.flatMap((one) => one.study.cells.map((cell) =>
+    ({ study: one.name, world: world_of(one, cell)?.name, cell })))));
 }
 
 /** One study of the cells of all, with the study as a swept key, the last. */

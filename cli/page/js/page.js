@@ -37,9 +37,9 @@ function colophon(report) {
 }
 
 /** What the page says of a study. */
-function study_sections({ study, world }) {
+function study_sections({ study, world, worlds }) {
   if (study?.cells?.length) {
-    headline({ study, world });
+    headline({ study, world, worlds });
     if (study.cells.length > 1) sweep_section(study);
     cells_section({ study });
     reliability_section(study);
@@ -47,8 +47,8 @@ function study_sections({ study, world }) {
   }
 }
 
-function map_sections({ study, world, view }) {
-  if (world || study?.cells?.some((cell) => cell.trial_list?.length)) plan_section({ study, world });
+function map_sections({ study, world, worlds, view }) {
+  if (world || study?.cells?.some((cell) => cell.trial_list?.length)) plan_section({ study, world, worlds });
   if (view) view_section(view);
 }
 

@@ -4,7 +4,7 @@ import { chooser, element, nodes_of, paragraph, section } from "./elements.js";
 import { count, metres, percent } from "./format.js";
 import { is_number } from "./numbers.js";
 import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
-import { headline_cell } from "./study.js";
+import { headline_cell, world_of } from "./study.js";
 
 const PLAN_CUT_M = 2.3;       // higher edges, above doors, are omitted for clarity
 const SHOWN_ERROR_M = 0.1;    // shorter errors would be hidden by the dots
@@ -21,7 +21,9 @@ function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
 }
 
 export function plan_section(report) {
-  const made = section("plan", "Successes and failures on the map", world_words(report.world));
+  const shown = headline_cell(report.study);
+  const about = element("div", {}, world_words(world_of(report, shown)));
+  const made = section("plan", "Successes and failures on the map", about);
   const cells = (report.study?.cells ?? []).filter((cell) => cell.trial_list?.length);
   if (!have_plots()) {
     made.append(...cells.map((cell) => paragraph(plan_words(cell))));
@@ -29,20 +31,21 @@ export function plan_section(report) {
   }
   if (!cells.length) {
     made.append(figure("", "Plan of the world with the route along which the map is recorded.",
-      "Plan of the world", plan_height(report), () => plan_plot(report, null)));
+      "Plan of the world", plan_height(report, shown), () => plan_plot(report, shown)));
     return;
   }
-  const first = Math.max(0, cells.indexOf(headline_cell(report.study)));
+  const first = Math.max(0, cells.indexOf(shown));
   const note = element("p", { "aria-live": "polite" }, plan_words(cells[first]));
   const drawn = figure("", "Dots are true query positions. For failures and errors above 0.1 m, a"
     + " line leads to the estimated position. Clusters of failures indicate similar-looking"
     + " locations or too little structure. Hover over a dot for its trial number and error; click"
     + " a legend entry to hide it.",
     "Plan of the world with the queries, coloured by success, and lines to wrong estimates.",
-    plan_height(report), () => plan_plot(report, cells[first]));
+    plan_height(report, cells[first]), () => plan_plot(report, cells[first]));
   const choose = (i) => {
     note.replaceChildren(...nodes_of(plan_words(cells[i])));
-    draw_plot(drawn.querySelector("div.plot"), plan_height(report),
+    about.replaceChildren(...nodes_of(world_words(world_of(report, cells[i]))));
+    draw_plot(drawn.querySelector("div.plot"), plan_height(report, cells[i]),
       () => plan_plot(report, cells[i]));
   };
   if (cells.length > 1) {
@@ -73,13 +76,15 @@ function plan_words(cell) {
     + ` ${count(number("silent"))} unanswered.`;
 }
 
-/** Box around the world, or around the trials where there is no world. */
-function plan_extent(report) {
-  const points = (report.world?.segments ?? []).flatMap((s) => [[s[0], s[1]], [s[3], s[4]]]);
+/** Box around the world of a cell and the trials in it, of all cells: they are looked at in turn. */
+function plan_extent(report, chosen) {
+  const world = world_of(report, chosen);
+  const points = (world?.segments ?? []).flatMap((s) => [[s[0], s[1]], [s[3], s[4]]]);
   for (const cell of report.study?.cells ?? []) {
+    if (world_of(report, cell) !== world) continue;
     for (const row of cell.trial_list ?? []) points.push([row[1], row[2]]);
   }
-  for (const leg of report.world?.route ?? []) points.push(...leg);
+  for (const leg of world?.route ?? []) points.push(...leg);
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   for (const [x, y] of points) {
     box[0] = Math.min(box[0], x);
@@ -92,8 +97,8 @@ function plan_extent(report) {
   return { x: [x0 - edge, x1 + edge], y: [y0 - edge, y1 + edge] };
 }
 
-function plan_height(report) {
-  const { x, y } = plan_extent(report);
+function plan_height(report, cell) {
+  const { x, y } = plan_extent(report, cell);
   const width = room_px() - 80;
   const legend = width < 500 ? 130 : 0;  // one legend entry per line
   const height = 110 + width * (y[1] - y[0]) / (x[1] - x[0]);
@@ -101,14 +106,15 @@ function plan_height(report) {
 }
 
 function plan_plot(report, cell) {
-  const { x, y } = plan_extent(report);
-  const low = (report.world?.segments ?? [])
+  const { x, y } = plan_extent(report, cell);
+  const world = world_of(report, cell);
+  const low = (world?.segments ?? [])
     .filter((s) => Math.max(s[2], s[5]) < PLAN_CUT_M);
   const data = [
     segments_trace(low.map((s) => [s[0], s[1], s[3], s[4]]),
       { name: "edges of the world", line: { color: COLOUR.light, width: 1 } }),
-    route_trace(report.world?.route ?? []),
-    ...(cell ? trial_traces(cell.trial_list.map(trial_of)) : []),
+    route_trace(world?.route ?? []),
+    ...trial_traces((cell?.trial_list ?? []).map(trial_of)),
   ];
   const layout = {
     xaxis: axis("x, m", { range: x, showgrid: false, showline: false, constrain: "domain" }),

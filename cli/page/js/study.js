@@ -32,6 +32,9 @@ export function headline_cell(study) {
   return nominal || study.cells[0];
 }
 
+/** The world of a cell: a study may sweep worlds. */
+export const world_of = (report, cell) => report.worlds?.[cell?.world] ?? report.world;
+
 export const ceiling_of = (study, cell) => cell.world_ceiling ?? study.world_ceiling;
 const protocol_of = (study, cell) => cell.protocol || study.protocol;
 
@@ -78,11 +81,11 @@ function headline_tiles(report, cell) {
   const protocol = protocol_of(study, cell);
   const ceiling = ceiling_of(study, cell);
   const method = cell_key(cell, "localiser.method") ?? study.method;
-  const world = report.world?.name ?? cell_key(cell, "world.file");
+  const world = world_of(report, cell)?.name ?? cell_key(cell, "world.file");
   return [
     tile("Query protocol", protocol, PROTOCOLS[protocol]),
     tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: success of an`
-      + ` exhaustive search without noise`),
+      + ` exhaustive search without noise, all poses equally likely`),
     tile("Median error", metres(cell.median_error_m), is_number(cell.median_heading_error_deg)
       && `and ${significant(cell.median_heading_error_deg, 2)}° in heading, of answered queries`),
     tile("CPU time per query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)

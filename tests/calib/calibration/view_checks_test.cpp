@@ -4,12 +4,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibrate.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
 #include "calib/lens_models.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
+#include "calib/solver/minimise_reprojection.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
@@ -44,6 +54,7 @@ class ViewChecks : public testing::TestWithParam<std::uint64_t> {
 TEST_P(ViewChecks, GoodOnesPassInSilence) {
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
   EXPECT_TRUE(diagnosis.trust_warnings.empty());
+  EXPECT_TRUE(diagnosis.frame_doubts.empty());
   EXPECT_TRUE(diagnosis.warnings.empty());
 }
 
@@ -135,14 +146,39 @@ TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
       << error_output;
 }
 
+TEST_P(ViewChecks, ImagesExchangedBetweenTwoFramesAreNamed) {
+  std::swap(test::view_of(good_, 2, 1).pixels_px, test::view_of(good_, 9, 1).pixels_px);
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(
+      error_output.find("frame 2, camera 1 and frame 9, camera 1: each belongs to the other frame"),
+      0u)
+      << error_output;
+}
+
 TEST_P(ViewChecks, OneFrameTakenAtOtherTimesIsDoubted) {
   test::view_of(good_, 6, 1).pixels_px = test::view_of(good_, 5, 1).pixels_px;
+  for (auto& p : test::view_of(good_, 6, 1).pixels_px) p.x() += 1;  // not the same view
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
-  EXPECT_EQ(diagnosis.trust_warnings[0].find("frame 6, camera 1: each image fits the board to "),
-            0u)
-      << diagnosis.trust_warnings[0];
-  EXPECT_NE(diagnosis.trust_warnings[0].find("leave the frame out"), std::string::npos);
+  ASSERT_EQ(diagnosis.frame_doubts.size(), 1u);
+  const auto& [frame, text] = diagnosis.frame_doubts[0];
+  EXPECT_EQ(frame, 6);
+  EXPECT_EQ(text.find("frame 6, camera 1: each image fits the board to "), 0u) << text;
+  EXPECT_NE(text.find("leave the frame out"), std::string::npos);
+  // the solution does not refute it
+  const RigEstimate estimate = calibrate(good_);
+  const std::vector<std::string>& doubts = estimate.calibration->trust_warnings;
+  EXPECT_NE(std::find(doubts.begin(), doubts.end(), text), doubts.end());
+}
+
+TEST_P(ViewChecks, ASoundSolutionRefutesADoubt) {
+  check_and_sort(good_);
+  const BoardState end = minimise_reprojection(good_, initial_state(good_, {Radial1{}, Radial1{}}));
+  const std::vector<FrameDoubt> doubts{{6, "of a sound frame"}, {99, "of one that was left out"}};
+  EXPECT_EQ(unrefuted(doubts, good_, end, {}), std::vector<std::string>{doubts[1].text});
+  const std::vector<CornerOutlier> outliers{{6, 1, 3, "", {0, 0}, 9}};
+  EXPECT_EQ(unrefuted(doubts, good_, end, outliers).size(), 2u);
+  for (auto& p : test::view_of(good_, 6, 1).pixels_px) p.x() += 2;
+  EXPECT_EQ(unrefuted(doubts, good_, end, {}).size(), 2u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ViewChecks, testing::Range<std::uint64_t>(400, 410));

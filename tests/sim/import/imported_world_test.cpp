@@ -114,6 +114,27 @@ TEST(AxesAndUnit, AreRecognised) {
   }
 }
 
+// A corridor that is narrower than it is high looks like a low one that lies on its side.
+TEST(AxesAndUnit, OfACorridorAreAskedFor) {
+  for (const auto& [width, height] :
+       {std::pair(1.5, 2.6), std::pair(2.2, 2.6), std::pair(2.6, 2.4), std::pair(4.0, 6.0)}) {
+    Mesh corridor;
+    add_box(corridor, {0, 0, 0}, {40, width, height});
+    for (int door = 0; door < 20; ++door) {
+      add_box(corridor, {1 + 1.9 * door, 0, 0}, {1.9 + 1.9 * door, 0.05, 2.1});
+    }
+    for (const int up : {0, 1, 2}) {
+      const Mesh mesh = turned_and_scaled(corridor, up, 1);
+      EXPECT_NE(error_message([&] {
+                  axes_and_unit(mesh, {}, {}, "m.obj");
+                }).find("does not say which axis is up"),
+                std::string::npos)
+          << width << " x " << height << ", up " << up;
+      EXPECT_EQ(axes_and_unit(mesh, up, 1, "m.obj").up_axis, up);
+    }
+  }
+}
+
 TEST(AxesAndUnit, AreAskedForWhereTheyAreNotClear) {
   Mesh cube;
   add_box(cube, {0, 0, 0}, {5, 5, 5});

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""What `lines` states of its errors, and how often it is wrong, in buildings that repeat: a hall whose
+contents are the same after half a turn, and a corridor of equal doors.
+
+    repeating_buildings.py PROGRAM [--trials 300] [--seed 1]
+
+Prints a line for each building, kind of map and stated error: queries answered, and of these wrong.
+"""
+import argparse
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+HEIGHT_M = 2.6
+STATED = (0.001, 0.01, 0.1)
+
+
+class Mesh:
+    """Boxes and rectangles as an OBJ file, metres, z up."""
+
+    def __init__(self):
+        self.vertices, self.faces = [], []
+
+    def rectangle(self, *corners):
+        first = len(self.vertices) + 1
+        self.vertices += corners
+        self.faces.append(range(first, first + 4))
+
+    def box(self, x0, y0, z0, x1, y1, z1):
+        for y in (y0, y1):
+            self.rectangle((x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1))
+        for x in (x0, x1):
+            self.rectangle((x, y0, z0), (x, y1, z0), (x, y1, z1), (x, y0, z1))
+        for z in (z0, z1):
+            self.rectangle((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z))
+
+    def write(self, file):
+        rows = ['v {:.6f} {:.6f} {:.6f}'.format(*v) for v in self.vertices]
+        rows += ['f ' + ' '.join(map(str, face)) for face in self.faces]
+        file.write_text('\n'.join(rows) + '\n')
+
+
+def turned_hall(seed, length_m=16, width_m=6):
+    """Furniture along one long wall, and the same along the other, half a turn about the middle."""
+    chance, mesh = random.Random(seed), Mesh()
+    mesh.box(0, 0, 0, length_m, width_m, HEIGHT_M)
+    x = 0.2
+    while x < length_m - 1.5:
+        width, depth = chance.uniform(0.4, 1.1), chance.uniform(0.3, 1.2)
+        height = chance.uniform(0.7, 2.2)
+        mesh.box(x, 0.02, 0, x + width, 0.02 + depth, height)
+        mesh.box(length_m - x - width, width_m - 0.02 - depth, 0, length_m - x, width_m - 0.02, height)
+        x += width + chance.uniform(0.15, 0.8)
+    return mesh
+
+
+def corridor(doors=20, length_m=40, width_m=2.2):
+    """Equal doors on both sides at equal distances."""
+    mesh = Mesh()
+    mesh.box(0, 0, 0, length_m, width_m, HEIGHT_M)
+    step = length_m / doors
+    for i in range(doors):
+        x = (i + 0.5) * step - 0.45
+        mesh.box(x, 0, 0, x + 0.9, 0.03, 2.1)
+        mesh.box(x, width_m - 0.03, 0, x + 0.9, width_m, 2.1)
+    return mesh
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('program')
+    parser.add_argument('--trials', type=int, default=300)
+    parser.add_argument('--seed', type=int, default=1)
+    options = parser.parse_args()
+    program = str(pathlib.Path(options.program).resolve())
+    print(f'{"building":<10}{"headings":>10}{"stated %":>10}{"answered":>10}{"wrong":>8}{"wrong %":>9}')
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for building, mesh in (('hall', turned_hall(options.seed)), ('corridor', corridor())):
+            mesh.write(folder / f'{building}.obj')
+            subprocess.run([program, 'world', 'import', f'{building}.obj', '--up', 'z', '--unit', 'm', '-o',
+                            f'{building}.world.toml', '-q'], cwd=folder, check=True, capture_output=True)
+            (folder / 's.toml').write_text(
+                f'[study]\ntrials = {options.trials}\nseed = {options.seed}\nprotocol = "near_path"\n'
+                f'[world]\nfile = "{building}.world.toml"\n[sweep]\n"map.headings" = ["path", 8]\n'
+                f'"localiser.max_error_rate" = {list(STATED)}\n')
+            run = subprocess.run([program, 'study', 's.toml', '-o', building, '-q', '--json'], cwd=folder,
+                                 check=True, capture_output=True, text=True)
+            for cell in json.loads(run.stdout)['cells']:
+                answered = round(cell['coverage'] * cell['trials'])
+                wrong = answered - round(cell['success'] * cell['trials'])
+                print(f'{building:<10}{str(cell["swept"]["map.headings"]).removesuffix(".0"):>10}'
+                      f'{100 * cell["swept"]["localiser.max_error_rate"]:>10g}{answered:>10}{wrong:>8}'
+                      f'{100 * wrong / max(1, answered):>9.1f}', flush=True)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -55,22 +56,35 @@ std::string python(const Folder& folder, const std::string& with_query) {
 TEST(ProgramLocaliser, MayPrintOneLineForAQuestion) {
   const TopologicalMap map = five_rooms();
   const Folder folder;
-  const std::string answer = R"(print('{"status": "unsure"}', flush=True))";
-  const auto twice =
-      make_localiser("program", map, running(python(folder, answer + "; " + answer)));
+  const std::string line = R"('{"status": "unsure"}')";
+  const auto twice = make_localiser(
+      "program", map,
+      running(python(folder, "print(" + line + " + chr(10) + " + line + ", flush=True)")));
   for (int i = 0; i < 2; ++i) {
     const LocalisationAnswer said = twice->localise(map.nodes[i].view);
     EXPECT_EQ(said.status, LocalisationStatus::failed);
     EXPECT_NE(said.failure.find("prints more than one line for a question"), std::string::npos)
         << said.failure;
   }
-  // also if it comes late
+}
+
+// Also if it comes late.
+TEST(ProgramLocaliser, MayPrintNothingUnasked) {
+  const TopologicalMap map = five_rooms();
+  const Folder folder;
+  const std::filesystem::path told = folder.path() / "told";
   const auto late = make_localiser(
       "program", map,
-      running(python(folder, answer + "; time.sleep(0.05 if number == 0 else 0); " + answer)));
-  EXPECT_NE(late->localise(map.nodes[0].view).status, LocalisationStatus::answered);
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_EQ(late->localise(map.nodes[1].view).status, LocalisationStatus::failed);
+      running(python(folder, R"(print('{"status": "unsure"}', flush=True); time.sleep(0.2); )"
+                             R"(print('{"status": "unsure"}', flush=True); open(')" +
+                                 told.string() + R"(', 'w').close())")));
+  EXPECT_NE(late->localise(map.nodes[0].view).status, LocalisationStatus::failed);
+  for (int wait = 0; wait < 600 && !std::filesystem::exists(told); ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  const LocalisationAnswer said = late->localise(map.nodes[1].view);
+  EXPECT_EQ(said.status, LocalisationStatus::failed);
+  EXPECT_NE(said.failure.find("prints more than one line"), std::string::npos) << said.failure;
 }
 
 TEST(ProgramLocaliser, WorksAsTheManualSays) {

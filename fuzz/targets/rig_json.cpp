@@ -78,7 +78,8 @@ std::vector<std::string> rig_json_seeds() {
   RigEstimate estimate = calibrated_rig();
   seeds.push_back(format_rig(estimate));
   seeds.push_back(format_rig(estimate, KeepEvidence::no));
-  estimate.calibration->effects = {0.1, 0.05, 0.06, 1e-3, 3e-4, 5e-5, 2e-4, {{0, 1e-4, -2e-4}}};
+  estimate.calibration->effects = {
+      0.1, 0.05, 0.06, 1e-3, 3e-4, 4e-4, 5e-5, 2e-4, {{0, 1e-4, -2e-4}}};
   seeds.push_back(format_rig(estimate, KeepEvidence::no));
   estimate.calibration->effects.reset();
   // A component of the rotation that was held: the others are listed.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -37,14 +36,6 @@ std::optional<Rig> with_richer_lenses(const Rig& rig) {
   }
   if (!richer) return {};
   return in_models(rig, rich);
-}
-
-/// Views of one frame.
-std::vector<BoardView> views_in_frame(const BoardObservations& observations, int frame) {
-  std::vector<BoardView> views;
-  std::copy_if(observations.views.begin(), observations.views.end(), std::back_inserter(views),
-               [&](const BoardView& view) { return view.frame == frame; });
-  return views;
 }
 
 }  // namespace
@@ -80,7 +71,7 @@ std::optional<RobustFit> outliers_by_richer_lenses(const BoardObservations& obse
   for (std::size_t f = 0; f < whole.frames.size(); ++f) {
     const int frame = whole.frames[f];
     if (std::binary_search(fit.state.frames.begin(), fit.state.frames.end(), frame)) continue;
-    const std::vector<BoardView> views = views_in_frame(observations, frame);
+    const std::vector<BoardView> views = at_frames(observations, {frame}).views;
     whole.T_first_board[f] =
         fit_board_pose(target_m, views, whole.rig, whole.T_first_board[f], 50).T_first_board;
   }

@@ -62,27 +62,19 @@ class OneCamera {
     return turned_over(std::move(guess), 4);
   }
 
-  /// With refined poses, each from its start or from its mirror image, whichever fits better.
-  InitialCamera turned_over(InitialCamera guess, int iterations) const {
-    const Rig rig{{guess.camera}, {Pose{}}};
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      guess.T_camera_board[i] =
-          fit_board_pose_both_ways(target_m_, views_[i], rig, guess.T_camera_board[i], iterations)
-              .T_first_board;
-    }
-    guess.typical_rms_px = typical(residuals(guess));
-    return guess;
+  InitialCamera with_refined_poses(InitialCamera guess, int iterations) const {
+    return with_poses_by(
+        std::move(guess), [&](const BoardView& view, const Rig& rig, const Pose& start) {
+          return fit_board_pose(target_m_, std::span(&view, 1), rig, start, iterations);
+        });
   }
 
-  InitialCamera with_refined_poses(InitialCamera guess, int iterations) const {
-    const Rig rig{{guess.camera}, {Pose{}}};
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      guess.T_camera_board[i] = fit_board_pose(target_m_, std::span(&views_[i], 1), rig,
-                                               guess.T_camera_board[i], iterations)
-                                    .T_first_board;
-    }
-    guess.typical_rms_px = typical(residuals(guess));
-    return guess;
+  /// The same, each from its start or from its mirror image, whichever fits better.
+  InitialCamera turned_over(InitialCamera guess, int iterations) const {
+    return with_poses_by(std::move(guess),
+                         [&](const BoardView& view, const Rig& rig, const Pose& start) {
+                           return fit_board_pose_both_ways(target_m_, view, rig, start, iterations);
+                         });
   }
 
   /// A Gauss–Newton step of some of the camera's parameters, with the poses eliminated, halved
@@ -109,6 +101,16 @@ class OneCamera {
   }
 
  private:
+  template <class Fit>
+  InitialCamera with_poses_by(InitialCamera guess, const Fit& fit) const {
+    const Rig rig{{guess.camera}, {Pose{}}};
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      guess.T_camera_board[i] = fit(views_[i], rig, guess.T_camera_board[i]).T_first_board;
+    }
+    guess.typical_rms_px = typical(residuals(guess));
+    return guess;
+  }
+
   std::vector<double> residuals(const InitialCamera& guess) const {
     const Rig rig{{guess.camera}, {Pose{}}};
     std::vector<double> rms;

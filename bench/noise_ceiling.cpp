@@ -36,11 +36,11 @@ void run(const std::string& file, const std::string& protocol, int queries, std:
     const auto trial = static_cast<std::uint32_t>(query);
     const localise::Pose2D pose = places.draw(seed, trial);
     const NoisyLook look = noisy.look_from(pose, {.seed = seed, .trial = trial});
-    const Aliases found = finder.aliases(pose);
+    const QueryCeiling found = query_ceiling(finder.aliases(pose), places);
     right += look.right();
-    unaliased += found.unique();
-    unaliased_wrong += found.unique() && !look.right();
-    ceiling += found.ceiling() / queries;
+    unaliased += found.unaliased;
+    unaliased_wrong += found.unaliased && !look.right();
+    ceiling += found.right / queries;
     rivals += static_cast<double>(look.rivals) / queries;
   }
   const Interval interval = wilson_interval(right, queries);

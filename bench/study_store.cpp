@@ -56,8 +56,10 @@ double max_memory_mb() {
 void fill(const fs::path& folder, const StudyWork& work, Shard shard, double& encoding_s) {
   StudyStore store(store_file(folder, shard));
   for (const CeilingJob& ceiling : work.ceilings) {
-    std::vector<int> of_query(static_cast<std::size_t>(ceiling.queries), not_known);
-    for (int i = shard.index; i < ceiling.queries; i += shard.count) of_query[i] = i % 3;
+    QueryCeilings of_query(static_cast<std::size_t>(ceiling.queries));
+    for (int i = shard.index; i < ceiling.queries; i += shard.count) {
+      of_query[i] = QueryCeiling{1.0 / (1 + i % 3), i % 3 == 0};
+    }
     const auto [key, value] = ceiling_part(ceiling.key, of_query);
     store.set_note(key, value);
   }

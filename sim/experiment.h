@@ -57,7 +57,13 @@ class QueryPlaces {
   /// Throws Error after 1000 draws without success, or for a free floor that is not closed off.
   localise::Pose2D draw(std::uint64_t seed, std::uint32_t trial) const;
 
+  /// Density of the queries at a pose, up to a factor: the number of straight parts of the route
+  /// from which it may be drawn; on the free floor 1 or 0.
+  double density(const localise::Pose2D& pose) const;
+
  private:
+  bool is_reached(const localise::Pose2D& pose, const Eigen::Vector2d& on_route_m) const;
+
   const Visibility& visibility_;
   QueryProtocol protocol_;
   double eye_height_m_;

@@ -45,7 +45,7 @@ struct MakeOptions {
 };
 
 struct InfoOptions {
-  std::string world, plan, rig = "nominal";
+  std::string world, plan, rig = "nominal", protocol = "path";
   int poses = 200;
 };
 
@@ -97,7 +97,7 @@ std::vector<double> segment_lengths_m(const World& world) {
   return lengths;
 }
 
-/// How far places look alike, at poses of the protocol `path`.
+/// How far places look alike, at poses of a protocol.
 struct Aliasing {
   double unique_share = 0, undetermined_share = 0, ceiling = 0;
 };
@@ -108,13 +108,14 @@ Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   NoiseFreeViewOptions looking;
   looking.mount.height_m = eye_height_m;
   const AliasFinder finder(visibility, read_rig(find_rig(options.rig)).estimate.rig, looking);
-  const QueryPlaces places(visibility, QueryProtocol::path, eye_height_m);
+  const QueryPlaces places(visibility, query_protocol(options.protocol), eye_height_m);
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
     const Aliases aliases = finder.aliases(places.draw(1, static_cast<std::uint32_t>(i)));
-    sum.unique_share += aliases.unique();
+    const QueryCeiling query = query_ceiling(aliases, places);
+    sum.unique_share += query.unaliased;
     sum.undetermined_share += !aliases.determined;
-    sum.ceiling += aliases.ceiling();
+    sum.ceiling += query.right;
   }
   const double poses = options.poses;
   return {sum.unique_share / poses, sum.undetermined_share / poses, sum.ceiling / poses};
@@ -179,15 +180,16 @@ void info(const InfoOptions& options, Session& session) {
   }
   if (!world.route.empty() && options.poses > 0) {
     const Aliasing aliasing = aliasing_of(world, options);
-    json["aliasing"] = {{"poses", options.poses},
+    json["aliasing"] = {{"protocol", options.protocol},
+                        {"poses", options.poses},
                         {"unique_share", aliasing.unique_share},
                         {"ceiling", aliasing.ceiling},
                         {"undetermined_share", aliasing.undetermined_share}};
     text += fmt::format(
-        "  of {} views beside the route {:.1f} % are like no other place's, {:.1f} % leave the "
+        "  of {} views ({}) {:.1f} % are like no other place's, {:.1f} % leave the "
         "pose open;\n  at best {:.1f} % can be localised (noise-free, guesses counted)\n",
-        options.poses, 100 * aliasing.unique_share, 100 * aliasing.undetermined_share,
-        100 * aliasing.ceiling);
+        options.poses, options.protocol, 100 * aliasing.unique_share,
+        100 * aliasing.undetermined_share, 100 * aliasing.ceiling);
   }
   if (!world.view_sets.empty() && !world.route.empty() && options.poses > 0) {
     const SetFigures figures =
@@ -264,8 +266,11 @@ void add_world(CLI::App& app, Session& session) {
   info_verb->add_option("world", i->world, "world file, or a shipped name (workshop)")->required();
   info_verb->add_option("--rig", i->rig, "rig file or shipped name, of the aliasing figure")
       ->capture_default_str();
-  info_verb->add_option("--poses", i->poses, "of the aliasing figure, beside the route; 0: none")
+  info_verb->add_option("--poses", i->poses, "views of the aliasing figure; 0: none")
       ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
+  info_verb
+      ->add_option("--protocol", i->protocol, "where they are: near_path, path, anywhere or free")
       ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
   check_files_written(*info_verb, {"--plan"});

@@ -10,6 +10,7 @@
 
 #include "calib/rig.h"
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/floor_grid.h"
 #include "sim/study/free_floor.h"
@@ -24,8 +25,10 @@ using namespace localise;
 
 namespace {
 
-constexpr double missing_share = 0.05;      ///< of the image length, that may differ
-constexpr double same_place_m = 0.5;        ///< hypotheses that close are one
+constexpr double missing_share = 0.05;  ///< of the image length, that may differ
+constexpr double right_within_m = 1;    ///< of the truth, an answer is right
+constexpr double same_place_m = 0.5;    ///< hypotheses that close are one, if their headings are
+constexpr double same_heading_rad = 0.2;
 constexpr std::size_t most_aliases = 1000;  ///< a ceiling below 0.1 % is none
 
 /// Whether two pairs of edges gave the same pose, up to rounding.
@@ -47,7 +50,66 @@ bool mostly(const std::vector<ViewEdge>& edges,
   return true;
 }
 
+/// Centres of discs of radius r that hold as many of the points as any that holds point i: the
+/// point itself, and those with it and another on the rim.
+std::vector<Eigen::Vector2d> disc_centres(const std::vector<Eigen::Vector2d>& points,
+                                          std::size_t i,
+                                          double r) {
+  std::vector<Eigen::Vector2d> centres{points[i]};
+  for (const Eigen::Vector2d& other : points) {
+    const Eigen::Vector2d half = (other - points[i]) / 2;
+    if (half.norm() > r || half.norm() < 1e-9) continue;
+    const Eigen::Vector2d across = Eigen::Vector2d(-half.y(), half.x()).normalized();
+    const double rise = std::sqrt(r * r - half.squaredNorm());
+    centres.emplace_back(points[i] + half + rise * across);
+    centres.emplace_back(points[i] + half - rise * across);
+  }
+  return centres;
+}
+
+/// The greatest sum of weights of points within one disc of radius r.
+double heaviest_disc(const std::vector<Eigen::Vector2d>& points,
+                     const std::vector<double>& weights,
+                     double r) {
+  double heaviest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const Eigen::Vector2d& centre : disc_centres(points, i, r)) {
+      double sum = 0;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        if ((points[k] - centre).norm() <= r + 1e-9) sum += weights[k];
+      }
+      heaviest = std::max(heaviest, sum);
+    }
+  }
+  return heaviest;
+}
+
 }  // namespace
+
+int Aliases::elsewhere() const {
+  return static_cast<int>(std::count_if(poses.begin(), poses.end(), [&](const Pose2D& other) {
+    return distance_m(other, poses[0]) > right_within_m;
+  }));
+}
+
+QueryCeiling query_ceiling(const Aliases& aliases, const QueryPlaces& places) {
+  if (!aliases.determined) return {};
+  QueryCeiling ceiling{.unaliased = true};
+  std::vector<Eigen::Vector2d> points;
+  std::vector<double> weights;
+  double all = 0;
+  for (const Pose2D& pose : aliases.poses) {
+    const bool asked = points.empty();  // the query itself is possible, whatever rounding says
+    const double weight = std::max(places.density(pose), asked ? 1.0 : 0.0);
+    if (!(weight > 0)) continue;
+    points.emplace_back(pose.x_m, pose.y_m);
+    weights.push_back(weight);
+    all += weight;
+    if (distance_m(pose, aliases.poses[0]) > right_within_m) ceiling.unaliased = false;
+  }
+  ceiling.right = heaviest_disc(points, weights, right_within_m) / all;
+  return ceiling;
+}
 
 AliasFinder::AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options)
     : visibility_(visibility),
@@ -90,12 +152,21 @@ bool AliasFinder::looks_like(const std::vector<ViewEdge>& view, const Pose2D& po
 Aliases AliasFinder::aliases(const Pose2D& pose) const {
   Aliases result;
   const View view(edges_in_view(visibility_, rig_, options_, pose));
-  std::vector<Pose2D> found, rejected;
+  std::vector<Pose2D>& found = result.poses;
+  std::vector<Pose2D> rejected;
   FloorGrid found_at(same_place_m), rejected_at(same_place_m);
+  const auto add = [&](const Pose2D& other) {
+    found_at.add({other.x_m, other.y_m}, static_cast<int>(found.size()));
+    found.push_back(other);
+  };
+  add(pose);
   const auto try_one = [&](const Pose2D& other) {
-    const auto same = [&](int i) { return distance_m(found[i], other) < same_place_m; };
+    const auto same = [&](int i) {
+      return distance_m(found[i], other) < same_place_m &&
+             std::abs(heading_difference_rad(found[i], other)) < same_heading_rad;
+    };
     const Eigen::Vector2d at(other.x_m, other.y_m);
-    if (distance_m(other, pose) <= 1 || found_at.any_near(at, same_place_m, same)) return false;
+    if (found_at.any_near(at, same_place_m, same)) return false;
     if (!standing_.in_box(at) || !on_wire_frame(view, other) || !standing_.is_free(at)) {
       return false;
     }
@@ -107,14 +178,10 @@ Aliases AliasFinder::aliases(const Pose2D& pose) const {
       rejected.push_back(other);
       return false;
     }
-    found_at.add(at, static_cast<int>(found.size()));
-    found.push_back(other);
-    return found.size() == most_aliases;
+    add(other);
+    return found.size() > most_aliases;
   };
   result.determined = LookAlikePoses(frame_).visit(view.edges, missing_share, try_one);
-  result.elsewhere = static_cast<int>(found.size());
-  found.resize(std::min<std::size_t>(found.size(), 8));
-  result.examples = std::move(found);
   return result;
 }
 

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calib/rig.h"
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/look_alike_poses.h"
@@ -16,16 +18,34 @@ namespace vernier::sim::internal {
 
 /// Poses that cannot be distinguished from a given one.
 struct Aliases {
-  /// Number of poses more than 1 m away with the same noise-free view; the search ends at 1000.
-  int elsewhere = 0;
-  /// Whether the view determines a pose up to finitely many others. It does not without an upright
-  /// edge, or with uprights at one place of the floor only and no level edge.
+  /// Whether the view determines a pose up to finitely many others. It does not without two upright
+  /// or level edges, with uprights at one place of the floor only, or with parallel level edges
+  /// only.
   bool determined = true;
-  std::vector<localise::Pose2D> examples;  ///< some of them
-  bool unique() const { return determined && elsewhere == 0; }
-  /// Success rate of the best guess among indistinguishable poses; 0 among a continuum of them.
-  double ceiling() const { return determined ? 1.0 / (1 + elsewhere) : 0; }
+  /// The given pose, then those with the same noise-free view, at any distance and heading; the
+  /// search ends at 1000.
+  std::vector<localise::Pose2D> poses;
+  /// Those more than 1 m from the given one.
+  int elsewhere() const;
 };
+
+/// What the best guess can reach for one query.
+struct QueryCeiling {
+  /// Probability that the best guess is within 1 m; 0 where the poses are a continuum.
+  double right = 0;
+  /// Whether no pose more than 1 m away, at which the protocol asks, looks the same.
+  bool unaliased = false;
+  bool operator==(const QueryCeiling&) const = default;
+};
+
+/// By query; nothing of those that are not computed yet.
+using QueryCeilings = std::vector<std::optional<QueryCeiling>>;
+
+/// The best guess of who knows the world, the protocol and a noise-free view. Of poses that look
+/// the same each has the posterior density w_i / sum w, w = QueryPlaces::density: look-alikes are
+/// rigid motions of each other, which keep volumes. The best guess is the disc of 1 m on the floor
+/// with the greatest sum; no localiser answers better in the mean over the protocol's queries.
+QueryCeiling query_ceiling(const Aliases& aliases, const QueryPlaces& places);
 
 /// Finds all poses from which the world looks the same as from a given one: the upper limit of any
 /// localiser's success rate, computed without a localiser.

@@ -62,8 +62,25 @@ bool fit_uprights(const UprightEdges& world,
   return enough;
 }
 
+/// Direction of a level edge on the floor.
+Eigen::Vector2d direction_of(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
+  return (b_m - a_m).head<2>().normalized();
+}
+
+double sine_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Where lines on the floor cross: p + s d = q + t e.
+Eigen::Vector2d crossing(const Eigen::Vector2d& p,
+                         const Eigen::Vector2d& d,
+                         const Eigen::Vector2d& q,
+                         const Eigen::Vector2d& e) {
+  return p + sine_between(q - p, e) / sine_between(d, e) * d;
+}
+
 bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, const Visit& fits) {
-  const Eigen::Vector2d along = (level.b_m - level.a_m).head<2>().normalized();
+  const Eigen::Vector2d along = direction_of(level.a_m, level.b_m);
   const double apart = left_of(p.at_m, level.a_m.head<2>(), along);
   const Eigen::Vector2d to_a = level.a_m.head<2>() - p.at_m, to_b = level.b_m.head<2>() - p.at_m;
   const double reach = std::max(to_a.norm(), to_b.norm()) + slack_m;
@@ -73,7 +90,7 @@ bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, 
     if (enough) return;
     const Eigen::Vector3d centre(a.at_m.x(), a.at_m.y(), level.a_m.z());
     frame.visit_level({centre - around, centre + around}, [&](const WorldSegment& segment) {
-      const Eigen::Vector2d forward = (segment.b_m - segment.a_m).head<2>().normalized();
+      const Eigen::Vector2d forward = direction_of(segment.a_m, segment.b_m);
       for (const Eigen::Vector2d& direction : {forward, Eigen::Vector2d(-forward)}) {
         const double there = left_of(a.at_m, segment.a_m.head<2>(), direction);
         if (enough || std::abs(there - apart) > slack_m) continue;
@@ -84,7 +101,75 @@ bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, 
   return enough;
 }
 
+/// Up to six pairs of level edges that are not parallel, long ones first.
+template <class Pair>
+void pair_levels(const std::vector<ViewEdge>& view, double needed_px, std::vector<Pair>& pairs) {
+  constexpr double least_sine = 0.17;  // 10 degrees
+  std::vector<char> used(view.size(), 0);
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    for (std::size_t j = i + 1; j < view.size() && view[i].level && !used[i]; ++j) {
+      if (needed_px <= 0 || pairs.size() >= most_pairs) return;
+      if (!view[j].level || used[j]) continue;
+      const double sine = sine_between(direction_of(view[i].a_m, view[i].b_m),
+                                       direction_of(view[j].a_m, view[j].b_m));
+      if (std::abs(sine) < least_sine) continue;
+      used[i] = used[j] = 1;
+      needed_px -= view[j].length_px;  // the shorter one
+      pairs.push_back({static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+}
+
 }  // namespace
+
+/// The lines through the edges cross at one point of the view and at one of the world.
+bool LookAlikePoses::fit_levels(const ViewEdge& p,
+                                const ViewEdge& q,
+                                const Visit& fits,
+                                double& tried) const {
+  constexpr double far_m = 1e9, slack_sine = 0.01;
+  const Eigen::Vector3d any(far_m, far_m, UprightEdges::tolerance_m);
+  const Eigen::Vector2d along_p = direction_of(p.a_m, p.b_m), along_q = direction_of(q.a_m, q.b_m);
+  const Eigen::Vector2d seen = crossing(p.a_m.head<2>(), along_p, q.a_m.head<2>(), along_q);
+  const double sine = sine_between(along_p, along_q), cosine = along_p.dot(along_q);
+  double reach = 0;  // from any point of one to any of the other
+  for (const Eigen::Vector3d& of_p : {p.a_m, p.b_m}) {
+    for (const Eigen::Vector3d& of_q : {q.a_m, q.b_m}) {
+      reach = std::max(reach, (of_p - of_q).head<2>().norm() + slack_m);
+    }
+  }
+  bool enough = false;
+  const auto fit = [&](const WorldSegment& a, const WorldSegment& b, double side) {
+    const Eigen::Vector2d along_a = side * direction_of(a.a_m, a.b_m);
+    const Eigen::Vector2d along_b = direction_of(b.a_m, b.b_m);
+    const double sine_there = sine_between(along_a, along_b), cosine_there = along_a.dot(along_b);
+    // b is seen in one direction or the other
+    if (std::abs(sine_there * cosine - cosine_there * sine) > slack_sine) return;
+    const Pose2D pose =
+        pose_that_brings(seen, crossing(a.a_m.head<2>(), along_a, b.a_m.head<2>(), along_b),
+                         angle(along_a) - angle(along_p));
+    const FloorMotion moved(pose);
+    const auto on = [&](const ViewEdge& edge, const WorldSegment& segment) {
+      return lies_on(moved(edge.a_m), segment.a_m, segment.b_m) &&
+             lies_on(moved(edge.b_m), segment.a_m, segment.b_m);
+    };
+    if (on(p, a) && on(q, b)) enough = fits(pose);
+  };
+  const Eigen::Vector3d height_p(0, 0, p.a_m.z());
+  frame_.visit_level({height_p - any, height_p + any}, [&](const WorldSegment& a) {
+    if (enough || ++tried > most_work) return;
+    const Eigen::Vector3d around(reach, reach, UprightEdges::tolerance_m);
+    Eigen::Vector3d low = a.a_m.cwiseMin(a.b_m), high = a.a_m.cwiseMax(a.b_m);
+    low.z() = high.z() = q.a_m.z();
+    frame_.visit_level({low - around, high + around}, [&](const WorldSegment& b) {
+      if (enough || ++tried > most_work) return;
+      for (const double side : {1.0, -1.0}) {
+        if (!enough) fit(a, b, side);
+      }
+    });
+  });
+  return enough;
+}
 
 /// Takes the pair that is quickest to fit for its length, again and again. Below 1 m of distance
 /// headings become inexact.
@@ -149,6 +234,7 @@ std::vector<LookAlikePoses::Pair> LookAlikePoses::pairs(const std::vector<ViewEd
     needed_px -= std::min(view[i].length_px, view[level].length_px);
     ++level;
   }
+  if (pairs.empty()) pair_levels(view, needed_px, pairs);
   return pairs;
 }
 
@@ -156,15 +242,20 @@ bool LookAlikePoses::visit(const std::vector<ViewEdge>& view,
                            double needed_share,
                            const Visit& visit) const {
   const std::vector<Pair> chosen = pairs(view, needed_share);
-  for (const Pair& pair : chosen) {
-    const Upright p = *upright_of(view[pair.first]);
-    const auto q = upright_of(view[pair.second]);
-    if (q ? fit_uprights(frame_.uprights(), p, *q, visit)
-          : fit_level(frame_, p, view[pair.second], visit)) {
-      break;
+  double tried = 0;
+  for (const auto& [first, second] : chosen) {
+    const auto p = upright_of(view[first]), q = upright_of(view[second]);
+    bool enough = false;
+    if (!p) {
+      enough = fit_levels(view[first], view[second], visit, tried);
+    } else if (q) {
+      enough = fit_uprights(frame_.uprights(), *p, *q, visit);
+    } else {
+      enough = fit_level(frame_, *p, view[second], visit);
     }
+    if (enough) break;
   }
-  return !chosen.empty();
+  return !chosen.empty() && tried <= most_work;
 }
 
 }  // namespace vernier::sim::internal

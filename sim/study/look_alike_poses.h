@@ -19,31 +19,37 @@ namespace vernier::sim::internal {
 ///     turn = angle(b - a) - angle(q - p),   shift = a - R(turn) p
 ///
 /// An upright and a level edge of the view are fitted likewise to every upright with a level edge
-/// at that height and that distance from it. A view may differ somewhere from a place that looks
-/// like it, so several disjoint pairs are taken, until their shorter edges have `needed_share` of
-/// the image length of all edges together: a pose that none of them gives leaves more than that
-/// unexplained. The quickest are taken first, and at most six; fewer where no edge is rare among
-/// very many.
+/// at that height and that distance from it; in a view without an upright, two level edges that are
+/// not parallel to every two level edges at their heights and that angle. A view may differ
+/// somewhere from a place that looks like it, so several disjoint pairs are taken, until their
+/// shorter edges have `needed_share` of the image length of all edges together: a pose that none of
+/// them gives leaves more than that unexplained. The quickest are taken first, and at most six;
+/// fewer where no edge is rare among very many.
 class LookAlikePoses {
  public:
   /// Keeps a reference to `frame`.
   explicit LookAlikePoses(const WireFrame& frame) : frame_(frame) {}
 
-  /// Calls `visit` for every pose, some of them more than once, until it returns true. False, and
-  /// no call, if the view has no such pair: it then fits poses in a continuum, or any at all.
+  /// Calls `visit` for every pose, some of them more than once, until it returns true. False if
+  /// the view has no such pair (it then fits poses in a continuum, or any at all) or too many level
+  /// edges to try.
   bool visit(const std::vector<ViewEdge>& view,
              double needed_share,
              const std::function<bool(const localise::Pose2D&)>& visit) const;
 
  private:
   struct Pair {
-    int first, second;  ///< of the view's edges; the first is upright
+    int first, second;  ///< of the view's edges; the first is upright, or neither
   };
   std::vector<Pair> pairs(const std::vector<ViewEdge>& view, double needed_share) const;
   void pair_uprights(const std::vector<ViewEdge>& view,
                      double needed_px,
                      std::vector<Pair>& pairs,
                      std::vector<char>& used) const;
+  bool fit_levels(const ViewEdge& p,
+                  const ViewEdge& q,
+                  const std::function<bool(const localise::Pose2D&)>& fits,
+                  double& tried) const;
 
   const WireFrame& frame_;
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
 
+#include <cmath>
+#include <cstddef>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -73,16 +75,42 @@ Pose2D QueryPlaces::draw(std::uint64_t seed, std::uint32_t trial) const {
     const double across = draws.uniform(-reach.across_m, reach.across_m);
     const double turn = draws.uniform(-reach.heading_rad, reach.heading_rad);
     const Pose2D query = compose(on_route, {0, across, turn});
-    if (!is_free(world, {query.x_m, query.y_m}, robot_radius_m, eye_height_m_ + robot_top_m))
-      continue;
-    if (!visibility_.sees({on_route.x_m, on_route.y_m, eye_height_m_},
-                          {query.x_m, query.y_m, eye_height_m_})) {
-      continue;
-    }
-    return query;
+    if (is_reached(query, {on_route.x_m, on_route.y_m})) return query;
   }
   throw Error("queries", "no free position near the route in 1000 draws",
               "move the route through free space");
+}
+
+bool QueryPlaces::is_reached(const Pose2D& pose, const Eigen::Vector2d& on_route_m) const {
+  const double top_m = eye_height_m_ + robot_top_m;
+  return is_free(visibility_.world(), {pose.x_m, pose.y_m}, robot_radius_m, top_m) &&
+         visibility_.sees({on_route_m.x(), on_route_m.y(), eye_height_m_},
+                          {pose.x_m, pose.y_m, eye_height_m_});
+}
+
+double QueryPlaces::density(const Pose2D& pose) const {
+  const Eigen::Vector2d at(pose.x_m, pose.y_m);
+  if (floor_) return floor_->reaches(at) ? 1 : 0;
+  constexpr double rounding = 1e-9;
+  const ProtocolSpan reach = span(protocol_);
+  double density = 0;
+  for (const RouteLeg& leg : visibility_.world().route) {
+    for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
+      const Eigen::Vector2d &a = leg.points_m[i - 1], &b = leg.points_m[i];
+      const double length = (b - a).norm();
+      if (!(length > 0)) continue;
+      const Eigen::Vector2d ahead = (b - a) / length, left(-ahead.y(), ahead.x());
+      const double along = ahead.dot(at - a);
+      if (along < -rounding || along > length + rounding) continue;
+      if (std::abs(left.dot(at - a)) > reach.across_m + rounding) continue;
+      const Eigen::Vector2d foot = a + along * ahead;
+      const Pose2D on_route{foot.x(), foot.y(), std::atan2(ahead.y(), ahead.x())};
+      const double turn = heading_difference_rad(on_route, pose);
+      if (std::abs(turn) > reach.heading_rad + rounding) continue;
+      if (is_reached(pose, foot)) density += 1;
+    }
+  }
+  return density;
 }
 
 Pose2D draw_query(const Visibility& visibility,

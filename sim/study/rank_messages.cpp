@@ -8,9 +8,11 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "calib/error.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/work_units.h"
 
@@ -29,7 +31,11 @@ struct RankTexts {
   }
   RankJson operator()(const Computed& m) const {
     const BlockRow& row = m.result.row;
-    return {"computed", m.number, row.cell, row.block, row.counted, m.result.aliases};
+    RankJson ceilings = RankJson::array();
+    for (const auto& [query, found] : m.result.ceilings) {
+      ceilings.push_back({query, found.right, found.unaliased});
+    }
+    return {"computed", m.number, row.cell, row.block, row.counted, std::move(ceilings)};
   }
   RankJson operator()(const Failed& m) const {
     return {"failed", m.place, m.fault, m.remedy, m.internal};
@@ -48,8 +54,13 @@ RankMessage parsed(const RankJson& json, const std::string& tail) {
                     {json.at(2).get<int>(), json.at(3).get<int>(), json.at(4)}};
   }
   if (kind == "computed") {
-    return Computed{json.at(1).get<std::int64_t>(),
-                    {{json.at(2), json.at(3).get<int>(), json.at(4), tail}, json.at(5)}};
+    UnitResult result{{json.at(2), json.at(3).get<int>(), json.at(4), tail}, {}};
+    for (const RankJson& of_query : json.at(5)) {
+      result.ceilings.emplace_back(
+          of_query.at(0).get<int>(),
+          QueryCeiling{of_query.at(1).get<double>(), of_query.at(2).get<bool>()});
+    }
+    return Computed{json.at(1).get<std::int64_t>(), std::move(result)};
   }
   if (kind == "failed") {
     return Failed{json.at(1), json.at(2), json.at(3), json.at(4).get<bool>()};

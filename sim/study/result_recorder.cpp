@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_keys.h"
@@ -40,7 +41,7 @@ void ResultRecorder::add(std::vector<std::pair<WorkUnit, UnitResult>> results) {
     if (unit.block >= 0) {
       rows.push_back(std::move(result.row));
     } else {
-      add_aliases(unit.ceiling, result.aliases);
+      add_queries(unit.ceiling, result.ceilings);
     }
   }
   if (rows.empty()) return;
@@ -51,17 +52,17 @@ void ResultRecorder::add(std::vector<std::pair<WorkUnit, UnitResult>> results) {
   }
 }
 
-void ResultRecorder::add_aliases(int ceiling, const std::vector<std::pair<int, int>>& aliases) {
-  std::vector<int>& of_query = of_query_[ceiling];
+void ResultRecorder::add_queries(int ceiling,
+                                 const std::vector<std::pair<int, QueryCeiling>>& queries) {
+  QueryCeilings& of_query = of_query_[ceiling];
   of_query.resize(
-      static_cast<std::size_t>(work_.ceilings[static_cast<std::size_t>(ceiling)].queries),
-      not_known);
-  for (const auto& [query, number] : aliases) {
-    of_query[static_cast<std::size_t>(query)] = number;
+      static_cast<std::size_t>(work_.ceilings[static_cast<std::size_t>(ceiling)].queries));
+  for (const auto& [query, found] : queries) {
+    of_query[static_cast<std::size_t>(query)] = found;
     ++queries_done_;
     if (run_.ceiling_progress) run_.ceiling_progress(queries_done_, queries_total_);
   }
-  uncommitted_ += static_cast<int>(aliases.size());
+  uncommitted_ += static_cast<int>(queries.size());
   constexpr int at_a_time = 500;
   if (uncommitted_ >= at_a_time) flush();
 }

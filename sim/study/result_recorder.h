@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/study/ceiling.h"
 #include "sim/study/study.h"
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
@@ -34,14 +35,14 @@ class ResultRecorder {
   void flush();
 
  private:
-  void add_aliases(int ceiling, const std::vector<std::pair<int, int>>& aliases);
+  void add_queries(int ceiling, const std::vector<std::pair<int, QueryCeiling>>& queries);
 
   const StudyWork& work_;
   const StudyRun& run_;
   StudyStore& store_;
   int blocks_done_ = 0, blocks_total_ = 0, queries_done_ = 0, queries_total_ = 0;
   int uncommitted_ = 0;
-  std::map<int, std::vector<int>> of_query_;  // by ceiling, those not committed
+  std::map<int, QueryCeilings> of_query_;  // by ceiling, those not committed
 };
 
 }  // namespace vernier::sim::internal

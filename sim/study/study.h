@@ -104,7 +104,7 @@ void run_study(const Study& study, const StudyRun& run);
 /// The limit that a world sets for any localiser, for the queries of a cell (ceiling.h).
 struct WorldCeiling {
   double success = 1;    ///< mean success of the best guess among poses that look the same
-  double unaliased = 1;  ///< share of the views that no other pose has
+  double unaliased = 1;  ///< share of the views that no other pose has at which the protocol asks
   /// For further queries: Wilson's, for which guesses vary no more than trials that fail or do not.
   Interval success_interval_95, unaliased_interval_95;
   int queries = 0;

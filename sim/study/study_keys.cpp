@@ -29,6 +29,7 @@
 #include "localise/pgh.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/reconstruct.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -50,21 +51,25 @@ constexpr int results_version = 1;
 /// The same of one method: `lines` since places too unlike the answer are no rivals of it.
 constexpr int lines_version = 4;
 
-/// The same of ceilings: 2 since they are searched by several pairs of edges.
-constexpr int ceiling_version = 2;
+/// The same of ceilings: 3 since the protocol's density counts.
+constexpr int ceiling_version = 3;
 
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
 
-/// "1:2 3:4 " as pairs; empty for other text.
-std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
-  std::vector<std::pair<int, int>> pairs;
+/// "1:0.5:0 2:1:1 " as query, `right` and `unaliased`; empty for other text.
+std::vector<std::pair<int, QueryCeiling>> parsed_ceilings(const std::string& text) {
+  std::vector<std::pair<int, QueryCeiling>> parsed;
   std::istringstream in(text);
-  std::pair<int, int> pair;
-  char colon = 0;
-  while (in >> pair.first >> colon >> pair.second && colon == ':') pairs.push_back(pair);
-  if (!in.eof()) pairs.clear();
-  return pairs;
+  int query = 0;
+  QueryCeiling one;
+  char first = 0, second = 0;
+  while (in >> query >> first >> one.right >> second >> one.unaliased && first == ':' &&
+         second == ':') {
+    parsed.emplace_back(query, one);
+  }
+  if (!in.eof()) parsed.clear();
+  return parsed;
 }
 
 /// Those of the method's histograms that differ from the default, which older stores have no keys
@@ -290,32 +295,33 @@ int ceiling_queries(const Study& study, const std::string& ceiling) {
   return static_cast<int>(std::min(trials, enough));
 }
 
-StoreNotes::value_type ceiling_part(const std::string& ceiling, const std::vector<int>& of_query) {
+StoreNotes::value_type ceiling_part(const std::string& ceiling, const QueryCeilings& of_query) {
   std::string text;
   for (std::size_t i = 0; i < of_query.size(); ++i) {
-    if (of_query[i] != not_known) text += fmt::format("{}:{} ", i, of_query[i]);
+    if (of_query[i]) {
+      text += fmt::format("{}:{}:{:d} ", i, of_query[i]->right, of_query[i]->unaliased);
+    }
   }
   return {fmt::format("{} part {}", ceiling, fingerprint(text)), text};
 }
 
-std::vector<int> noted_queries(const Study& study,
-                               const StoreNotes& notes,
-                               const std::string& ceiling) {
-  std::vector<int> of_query(static_cast<std::size_t>(ceiling_queries(study, ceiling)), not_known);
+QueryCeilings noted_queries(const Study& study,
+                            const StoreNotes& notes,
+                            const std::string& ceiling) {
+  QueryCeilings of_query(static_cast<std::size_t>(ceiling_queries(study, ceiling)));
   const std::string start = ceiling + " part ";
   for (auto note = notes.lower_bound(start);
        note != notes.end() && note->first.rfind(start, 0) == 0; ++note) {
-    for (const auto& [query, aliases] : number_pairs(note->second)) {
-      if (query < 0 || query >= static_cast<int>(of_query.size()) || aliases < not_determined) {
-        continue;
-      }
-      int& known = of_query[static_cast<std::size_t>(query)];
-      if (known != not_known && known != aliases) {
+    for (const auto& [query, found] : parsed_ceilings(note->second)) {
+      if (query < 0 || query >= static_cast<int>(of_query.size())) continue;
+      if (!(found.right >= 0 && found.right <= 1)) continue;
+      std::optional<QueryCeiling>& known = of_query[static_cast<std::size_t>(query)];
+      if (known && known != found) {
         throw Error(fmt::format("query {} of the world ceiling", query),
                     "two stores disagree on it",
                     "the stores come from different builds or processors; run one again");
       }
-      known = aliases;
+      known = found;
     }
   }
   return of_query;
@@ -325,11 +331,11 @@ std::optional<WorldCeiling> noted_ceiling(const Study& study,
                                           const StoreNotes& notes,
                                           const std::string& ceiling) {
   double unaliased = 0, right = 0;
-  const std::vector<int> of_query = noted_queries(study, notes, ceiling);
-  for (const int aliases : of_query) {  // in their order, whichever was done first
-    if (aliases == not_known) return std::nullopt;
-    if (aliases == 0) ++unaliased;
-    if (aliases >= 0) right += 1.0 / (1 + aliases);
+  const QueryCeilings of_query = noted_queries(study, notes, ceiling);
+  for (const std::optional<QueryCeiling>& query : of_query) {  // in order, whichever was done first
+    if (!query) return std::nullopt;
+    unaliased += query->unaliased;
+    right += query->right;
   }
   const auto all = static_cast<double>(of_query.size());
   return WorldCeiling{right / all, unaliased / all, wilson_interval(right, all),

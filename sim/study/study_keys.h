@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/experiment.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
@@ -42,18 +43,14 @@ std::optional<CalibrationRecord> noted_calibrations(const StoreNotes& notes,
 /// that its cost stays a small part of the study's. They are the queries of trials 0, 1, ….
 int ceiling_queries(const Study& study, const std::string& ceiling);
 
-/// What is known of a query: the number of its aliases, or one of these.
-inline constexpr int not_determined = -1;  ///< its view fits poses in a continuum (ceiling.h)
-inline constexpr int not_known = -2;       ///< it is not computed yet
-
 /// Queries that one run has computed, as a note: under a key of its own, since shards and resumed
 /// runs have other parts.
-StoreNotes::value_type ceiling_part(const std::string& ceiling, const std::vector<int>& of_query);
+StoreNotes::value_type ceiling_part(const std::string& ceiling, const QueryCeilings& of_query);
 
 /// What the notes have of a ceiling's queries. Throws Error if two parts disagree on one.
-std::vector<int> noted_queries(const Study& study,
-                               const StoreNotes& notes,
-                               const std::string& ceiling);
+QueryCeilings noted_queries(const Study& study,
+                            const StoreNotes& notes,
+                            const std::string& ceiling);
 
 /// std::nullopt until all queries are stored.
 std::optional<WorldCeiling> noted_ceiling(const Study& study,

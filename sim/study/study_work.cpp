@@ -16,6 +16,7 @@
 #include "calib/base/fingerprint.h"
 #include "calib/interval.h"
 #include "sim/study/budget.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -97,10 +98,10 @@ MissingWork missing_work(const Study& study,
     if (stored.trials(work.cell_keys[job.cell], job.block) < job.count) missing.blocks.push_back(i);
   }
   for (const CeilingJob& ceiling : work.ceilings) {
-    const std::vector<int> known = noted_queries(study, stored.notes(), ceiling.key);
+    const QueryCeilings known = noted_queries(study, stored.notes(), ceiling.key);
     std::vector<int>& queries = missing.queries.emplace_back();
     for (int i = shard.index; i < ceiling.queries; i += shard.count) {
-      if (known[static_cast<std::size_t>(i)] == not_known) queries.push_back(i);
+      if (!known[static_cast<std::size_t>(i)]) queries.push_back(i);
     }
   }
   return missing;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/ceiling.h"
@@ -107,17 +108,17 @@ std::shared_ptr<const AliasFinder> UnitComputer::finder(int ceiling) const {
   return finder_;
 }
 
-std::vector<std::pair<int, int>> UnitComputer::queries(const WorkUnit& unit,
-                                                       const std::stop_token& stop) const {
+std::vector<std::pair<int, QueryCeiling>> UnitComputer::queries(const WorkUnit& unit,
+                                                                const std::stop_token& stop) const {
   const StudyCell& cell = *work_.ceilings[static_cast<std::size_t>(unit.ceiling)].cell;
   const std::shared_ptr<const AliasFinder> aliases = finder(unit.ceiling);
   const QueryWorld world = scenes_.queries(cell);
-  std::vector<std::pair<int, int>> found;
+  std::vector<std::pair<int, QueryCeiling>> found;
   for (const int query : unit.queries) {
     if (stop.stop_requested()) break;
-    const Aliases of_query = aliases->aliases(
-        world.places->draw(cell.experiment.seed, static_cast<std::uint32_t>(query)));
-    found.emplace_back(query, of_query.determined ? of_query.elsewhere : not_determined);
+    const localise::Pose2D pose =
+        world.places->draw(cell.experiment.seed, static_cast<std::uint32_t>(query));
+    found.emplace_back(query, query_ceiling(aliases->aliases(pose), *world.places));
   }
   return found;
 }

@@ -30,8 +30,8 @@ struct WorkUnit {
 
 /// What a unit gives.
 struct UnitResult {
-  BlockRow row;                              ///< of a block
-  std::vector<std::pair<int, int>> aliases;  ///< of queries: each with the number of its aliases
+  BlockRow row;                                        ///< of a block
+  std::vector<std::pair<int, QueryCeiling>> ceilings;  ///< of queries
 };
 
 /// The missing blocks of a study as units, one each.
@@ -57,7 +57,8 @@ class UnitComputer {
 
  private:
   BlockRow block(const BlockJob& job) const;
-  std::vector<std::pair<int, int>> queries(const WorkUnit& unit, const std::stop_token& stop) const;
+  std::vector<std::pair<int, QueryCeiling>> queries(const WorkUnit& unit,
+                                                    const std::stop_token& stop) const;
   /// Of the ceiling asked for last, kept.
   std::shared_ptr<const AliasFinder> finder(int ceiling) const;
 

@@ -84,8 +84,8 @@ function headline_tiles(report, cell) {
   const world = world_of(report, cell)?.name ?? cell_key(cell, "world.file");
   return [
     tile("Query protocol", protocol, PROTOCOLS[protocol]),
-    tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: success of an`
-      + ` exhaustive search without noise, all poses equally likely`),
+    tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: the most that`
+      + ` any localiser can have`),
     tile("Median error", metres(cell.median_error_m), is_number(cell.median_heading_error_deg)
       && `and ${significant(cell.median_heading_error_deg, 2)}° in heading, of answered queries`),
     tile("CPU time per query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)

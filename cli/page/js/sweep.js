@@ -62,8 +62,8 @@ export const success_of = (study) => ({
 
 function success_figure(study, label) {
   const ceilings = study.cells.map((cell) => ceiling_of(study, cell)).filter(is_number);
-  const ceiling = ceilings.length ? " Dashed line: ceiling of the world, the success of an"
-    + " exhaustive search without noise to which all poses are equally likely." : "";
+  const ceiling = ceilings.length ? " Dashed line: ceiling of the world, the most that"
+    + " any localiser can have." : "";
   return figure("Success", `${spread_words(study, "success", percent)} Dots: success rate of`
     + ` a cell; bars: 95 % intervals.${ceiling}`,
     `Success rate with 95 per cent intervals against ${label}; values are in the table of`

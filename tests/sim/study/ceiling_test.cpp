@@ -15,6 +15,7 @@
 #include "calib/camera.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -37,17 +38,16 @@ TEST(AliasFinder, FindsTheTwinRoom) {
   const Visibility visibility(world);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
   const Aliases found = finder.aliases({2, 1, 1.5});
-  ASSERT_EQ(found.elsewhere, 1);
-  EXPECT_NEAR(found.examples[0].x_m, 12, 0.03);
-  EXPECT_NEAR(found.examples[0].y_m, 1, 0.03);
-  EXPECT_NEAR(found.ceiling(), 0.5, 1e-12);
+  ASSERT_EQ(found.elsewhere(), 1);
+  EXPECT_NEAR(found.poses[1].x_m, 12, 0.03);
+  EXPECT_NEAR(found.poses[1].y_m, 1, 0.03);
 }
 
 TEST(AliasFinder, OneMoreCupboardTellsThemApart) {
   const World world = twin_rooms(true);
   const Visibility visibility(world);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
-  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere, 0);
+  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere(), 0);
 }
 
 /// A room of 4 x 5 m, twice, 10 m apart, without anything in it but what `add` gives, at the same
@@ -69,6 +69,11 @@ Aliases aliases_of(const World& world, const Pose2D& pose) {
   return AliasFinder(visibility, test::nominal_rig().rig, {}).aliases(pose);
 }
 
+QueryCeiling ceiling_of(const World& world, QueryProtocol protocol, const Aliases& aliases) {
+  const Visibility visibility(world);
+  return query_ceiling(aliases, QueryPlaces(visibility, protocol, 1.2));
+}
+
 const Pose2D to_the_far_wall{2, 2, std::numbers::pi / 2};
 
 TEST(AliasFinder, AnUprightAndALevelEdgeSuffice) {
@@ -78,9 +83,9 @@ TEST(AliasFinder, AnUprightAndALevelEdgeSuffice) {
   });
   const Aliases found = aliases_of(world, to_the_far_wall);
   EXPECT_TRUE(found.determined);
-  ASSERT_EQ(found.elsewhere, 1);
-  EXPECT_NEAR(found.examples[0].x_m, 12, 1e-6);
-  EXPECT_NEAR(found.examples[0].y_m, 2, 1e-6);
+  ASSERT_EQ(found.elsewhere(), 1);
+  EXPECT_NEAR(found.poses[1].x_m, 12, 1e-6);
+  EXPECT_NEAR(found.poses[1].y_m, 2, 1e-6);
 }
 
 TEST(AliasFinder, TwoUprightsAtOnePlaceAreAsOne) {
@@ -88,26 +93,80 @@ TEST(AliasFinder, TwoUprightsAtOnePlaceAreAsOne) {
     f.segments_m.push_back({{x + 2, 5, 0.7}, {x + 2, 5, 1.1}});
     f.segments_m.push_back({{x + 2, 5, 1.3}, {x + 2, 5, 1.7}});
   };
-  const Aliases alone = aliases_of(twin_rooms_with(stack), to_the_far_wall);
+  const World two = twin_rooms_with(stack);
+  const Aliases alone = aliases_of(two, to_the_far_wall);
   EXPECT_FALSE(alone.determined);
-  EXPECT_FALSE(alone.unique());
-  EXPECT_EQ(alone.ceiling(), 0);
+  EXPECT_EQ(ceiling_of(two, QueryProtocol::path, alone), (QueryCeiling{0, false}));
   const World with_level = twin_rooms_with([&](FeatureSet& f, double x) {
     stack(f, x);
     f.segments_m.push_back({{x + 1.8, 5, 1.4}, {x + 2.4, 5, 1.4}});
   });
-  EXPECT_EQ(aliases_of(with_level, to_the_far_wall).elsewhere, 1);
+  EXPECT_EQ(aliases_of(with_level, to_the_far_wall).elsewhere(), 1);
 }
 
-TEST(AliasFinder, AViewOfNothingOrOfNoUprightIsNotUnique) {
+TEST(AliasFinder, AViewOfNothingOrOfOneLevelEdgeIsNotUnique) {
   const World bare = twin_rooms_with([](FeatureSet&, double) {});
   EXPECT_FALSE(aliases_of(bare, to_the_far_wall).determined);
   const World shelf = twin_rooms_with([](FeatureSet& f, double x) {
     f.segments_m.push_back({{x + 1, 5, 1.2}, {x + 3, 5, 1.2}});
   });
-  const Aliases found = aliases_of(shelf, to_the_far_wall);
-  EXPECT_FALSE(found.unique());
-  EXPECT_EQ(found.ceiling(), 0);
+  EXPECT_FALSE(aliases_of(shelf, to_the_far_wall).determined);
+}
+
+/// Rooms as above with these legs of a route.
+World twin_rooms_with_route(const std::vector<RouteLeg>& route) {
+  World world = twin_rooms_with([](FeatureSet&, double) {});
+  world.route = route;
+  return world;
+}
+
+// The other room is no alternative where nothing is asked there, or in the other direction only; it
+// is the better guess where the route passes twice as often.
+TEST(QueryCeiling, GoesByWhereTheProtocolAsks) {
+  const RouteLeg here{{{2, 0.5}, {2, 4}}}, there{{{12, 0.5}, {12, 4}}}, back{{{12, 4}, {12, 0.5}}};
+  const double up = std::numbers::pi / 2;
+  const Aliases two{.poses = {{2, 2, up}, {12, 2, up}}};
+  const auto of = [&](const std::vector<RouteLeg>& route, QueryProtocol protocol) {
+    return ceiling_of(twin_rooms_with_route(route), protocol, two);
+  };
+  const QueryCeiling one{1, true}, half{0.5, false};
+  EXPECT_EQ(of({here}, QueryProtocol::near_path), one);
+  EXPECT_EQ(of({here}, QueryProtocol::anywhere), one);
+  EXPECT_EQ(of({here, there}, QueryProtocol::near_path), half);
+  EXPECT_EQ(of({here, back}, QueryProtocol::path), one);
+  EXPECT_EQ(of({here, back}, QueryProtocol::anywhere), half);
+  const QueryCeiling twice = of({here, there, there}, QueryProtocol::path);
+  EXPECT_DOUBLE_EQ(twice.right, 2.0 / 3);
+  EXPECT_FALSE(twice.unaliased);
+}
+
+// An answer is right within 1 m: of poses at one place, and of two 1.9 m apart, one guess holds
+// all.
+TEST(QueryCeiling, OneGuessHoldsAllPosesOfItsDisc) {
+  const World world = twin_rooms_with_route({{{{2, 0.5}, {2, 4}}}, {{{12, 0.5}, {12, 4}}}});
+  const auto right = [&](const std::vector<Pose2D>& poses) {
+    return ceiling_of(world, QueryProtocol::anywhere, {.poses = poses}).right;
+  };
+  EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {12, 1, 1}, {12, 1, 2}}), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {12, 1, 1}, {12, 2.9, 1}}), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {12, 1, 1}, {12, 3.1, 1}}), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {2, 1.5, 2}}), 1);
+}
+
+// A table's edges beside a shelf: they slide along no line.
+TEST(AliasFinder, TwoLevelEdgesThatAreNotParallelSuffice) {
+  const auto levels = [](bool slanted) {
+    return twin_rooms_with([=](FeatureSet& f, double x) {
+      f.segments_m.push_back({{x + 1, 5, 1.2}, {x + 3, 5, 1.2}});
+      f.segments_m.push_back({{x + 1.5, 4, 0.9}, {x + 2.5, slanted ? 4.6 : 4, 0.9}});
+    });
+  };
+  const Aliases found = aliases_of(levels(true), to_the_far_wall);
+  EXPECT_TRUE(found.determined);
+  ASSERT_EQ(found.elsewhere(), 1);
+  EXPECT_NEAR(found.poses[1].x_m, 12, 1e-6);
+  EXPECT_NEAR(found.poses[1].y_m, 2, 1e-6);
+  EXPECT_FALSE(aliases_of(levels(false), to_the_far_wall).determined);
 }
 
 // The rare edge, of 4 % of the image length, is in one room only: within what may differ.
@@ -118,7 +177,7 @@ TEST(AliasFinder, AnEdgeThatMayDifferHidesNoAlias) {
     }
     if (x == 0) f.segments_m.push_back({{1.8, 5, 1.23}, {1.8, 5, 1.4}});
   });
-  EXPECT_EQ(aliases_of(world, to_the_far_wall).elsewhere, 1);
+  EXPECT_EQ(aliases_of(world, to_the_far_wall).elsewhere(), 1);
 }
 
 /// A hall of 14.4 x 6 m whose long walls have a board at two of every three places, 0.6 m apart,
@@ -185,7 +244,7 @@ TEST(AliasFinder, AgreesWithAllPosesOfAGrid) {
                   explains(view, other.edges, rig.cameras[0]);
     }
     const Aliases found = finder.aliases(at);
-    EXPECT_EQ(found.elsewhere, found.determined ? expected : 0) << "query " << query;
+    EXPECT_EQ(found.elsewhere(), found.determined ? expected : 0) << "query " << query;
     aliased += expected > 0;
     unique += expected == 0;
   }
@@ -215,7 +274,8 @@ TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   const Aliases found = finder.aliases({10, 10, 0.3});
   const double took = cpu_s() - before;
   RecordProperty("cpu_s", std::to_string(took));
-  EXPECT_TRUE(found.unique());
+  EXPECT_TRUE(found.determined);
+  EXPECT_EQ(found.elsewhere(), 0);
   EXPECT_LT(took, 30);
 }
 
@@ -223,7 +283,8 @@ TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {
   const AliasFinder finder(test::small_office_visibility(), test::nominal_rig().rig, {});
   double sum = 0;
   const auto places = map_poses(test::small_office().route, 2);
-  for (const Pose2D& place : places) sum += finder.aliases(place).ceiling();
+  const QueryPlaces queries(test::small_office_visibility(), QueryProtocol::anywhere, 1.2);
+  for (const Pose2D& place : places) sum += query_ceiling(finder.aliases(place), queries).right;
   EXPECT_GT(sum / static_cast<double>(places.size()), 0.9);
 }
 
@@ -237,7 +298,7 @@ TEST(AliasFinder, AWideWorldTakesNoMoreMemoryThanASmallOne) {
   getrusage(RUSAGE_SELF, &before);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
   getrusage(RUSAGE_SELF, &after);
-  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere, 0);
+  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere(), 0);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 20'000) << "kB";
 }
 
@@ -258,7 +319,7 @@ TEST(AliasFinder, StopsAtAThousandAliases) {
   }
   const Visibility visibility(world);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
-  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere, 1000);
+  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere(), 1000);
 }
 
 }  // namespace

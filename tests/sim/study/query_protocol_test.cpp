@@ -14,6 +14,7 @@
 
 #include "calib/error.h"
 #include "calib/statistics/distributions.h"
+#include "calib/statistics/random.h"
 #include "localise/place.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
@@ -60,6 +61,43 @@ TEST(QueryProtocol, QueriesStayInTheirSpanAndFillIt) {
     }
     EXPECT_GT(widest_m, reach.across_m / 2);
     EXPECT_GT(widest_rad, reach.heading_rad / 2);
+  }
+}
+
+// Of 4,000 draws and of 40,000 uniform poses weighted by the density, the shares in a quarter of
+// the floor and of the headings agree within four standard deviations (false alarms 1e-4 a
+// protocol).
+TEST(QueryProtocol, ItsDensityIsThatOfItsDraws) {
+  const Visibility& visibility = test::small_office_visibility();
+  const WorldExtent box = standing_box(test::small_office());
+  for (const auto protocol : {QueryProtocol::path, QueryProtocol::anywhere, QueryProtocol::free}) {
+    const QueryPlaces places(visibility, protocol, 1.2);
+    const Pose2D apart = places.draw(5, 99'999);
+    const auto inside = [&](const Pose2D& p) {
+      return p.x_m < apart.x_m && std::sin(p.heading_rad) > 0;
+    };
+    constexpr int draws = 4000, uniform = 40'000;
+    int drawn = 0;
+    for (std::uint32_t trial = 0; trial < draws; ++trial) {
+      const Pose2D pose = places.draw(5, trial);
+      EXPECT_GE(places.density(pose), 1) << trial;
+      drawn += inside(pose);
+    }
+    RandomStream stream({.seed = 6});
+    double all = 0, some = 0, all_squared = 0;
+    for (int i = 0; i < uniform; ++i) {
+      const Pose2D pose{stream.uniform(box.low_m.x(), box.high_m.x()),
+                        stream.uniform(box.low_m.y(), box.high_m.y()),
+                        stream.uniform(-std::numbers::pi, std::numbers::pi)};
+      const double weight = places.density(pose);
+      all += weight;
+      all_squared += weight * weight;
+      if (inside(pose)) some += weight;
+    }
+    const double share = some / all, effective = all * all / all_squared;
+    EXPECT_GT(effective, 200);
+    const double sigma = std::sqrt(share * (1 - share) * (1 / effective + 1.0 / draws));
+    EXPECT_NEAR(1.0 * drawn / draws, share, 4 * sigma) << name(protocol);
   }
 }
 

@@ -292,14 +292,14 @@ TEST_F(StudyRanks, AnotherInstructionSetIsRefusedOrNoted) {
 }
 
 TEST(RankMessages, RoundTrip) {
-  const Computed computed{7, {{"cell", 3, {2, 1, 0}, "[[1],[2]]"}, {{5, -1}, {6, 0}}}};
+  const Computed computed{7, {{"cell", 3, {2, 1, 0}, "[[1],[2]]"}, {{5, {1.0 / 3, false}}, {6, {1, true}}}}};
   const auto again = std::get<Computed>(parse_rank_text(rank_text(computed)));
   EXPECT_EQ(again.number, 7);
   EXPECT_EQ(again.result.row.cell, "cell");
   EXPECT_EQ(again.result.row.block, 3);
   EXPECT_EQ(again.result.row.counted, computed.result.row.counted);
   EXPECT_EQ(again.result.row.results, "[[1],[2]]");
-  EXPECT_EQ(again.result.aliases, computed.result.aliases);
+  EXPECT_EQ(again.result.ceilings, computed.result.ceilings);
   const auto unit = std::get<Assigned>(parse_rank_text(rank_text(Assigned{9, {-1, 4, {1, 2, 3}}})));
   EXPECT_EQ(unit.number, 9);
   EXPECT_EQ(unit.unit.ceiling, 4);

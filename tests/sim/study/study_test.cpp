@@ -286,15 +286,17 @@ TEST_F(StudyRuns, ShardsShareTheCeiling) {
   }
 }
 
-// Parts of a ceiling in any order and of any run make one: aliases of query i are i, the last view
-// determines nothing.
+// Parts of a ceiling in any order and of any run make one: the best guess for query i is right with
+// 1 / (1 + i), the last view determines nothing.
 TEST_F(StudyRuns, ACeilingIsMadeOfItsParts) {
   Study s = study(7);
   s.file = parse_study("[study]\ntrials = 7\n[map]\nspacing_m = 4\n", "s.toml");
   const std::string key = ceiling_key(s, s.file.cells[0]);
-  std::vector<int> even(7, not_known), odd(7, not_known), other(7, not_known);
-  for (int query = 0; query < 6; ++query) (query % 2 == 0 ? even : odd)[query] = query;
-  even[6] = not_determined;
+  QueryCeilings even(7), odd(7), other(7);
+  for (int query = 0; query < 6; ++query) {
+    (query % 2 == 0 ? even : odd)[query] = QueryCeiling{1.0 / (1 + query), query == 0};
+  }
+  even[6] = QueryCeiling{};
   StoreNotes notes{ceiling_part(key, even)};
   EXPECT_FALSE(noted_ceiling(s, notes, key));
   EXPECT_EQ(noted_queries(s, notes, key), even);
@@ -306,7 +308,7 @@ TEST_F(StudyRuns, ACeilingIsMadeOfItsParts) {
   EXPECT_EQ(ceiling->queries, 7);
   EXPECT_LT(ceiling->success_interval_95.low, ceiling->success);
   EXPECT_GT(ceiling->success_interval_95.high, ceiling->success);
-  other[3] = 5;
+  other[3] = QueryCeiling{0.5, false};
   notes.insert(ceiling_part(key, other));
   EXPECT_THROW(noted_ceiling(s, notes, key), Error);
 }

@@ -292,7 +292,8 @@ TEST_F(StudyRanks, AnotherInstructionSetIsRefusedOrNoted) {
 }
 
 TEST(RankMessages, RoundTrip) {
-  const Computed computed{7, {{"cell", 3, {2, 1, 0}, "[[1],[2]]"}, {{5, {1.0 / 3, false}}, {6, {1, true}}}}};
+  const Computed computed{
+      7, {{"cell", 3, {2, 1, 0}, "[[1],[2]]"}, {{5, {1.0 / 3, false}}, {6, {1, true}}}}};
   const auto again = std::get<Computed>(parse_rank_text(rank_text(computed)));
   EXPECT_EQ(again.number, 7);
   EXPECT_EQ(again.result.row.cell, "cell");

@@ -47,6 +47,7 @@ struct MakeOptions {
 struct InfoOptions {
   std::string world, plan, rig = "nominal", protocol = "path";
   int poses = 200;
+  std::uint64_t seed = 1;
 };
 
 struct ExportOptions {
@@ -111,7 +112,8 @@ Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   const QueryPlaces places(visibility, query_protocol(options.protocol), eye_height_m);
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
-    const Aliases aliases = finder.aliases(places.draw(1, static_cast<std::uint32_t>(i)));
+    const Aliases aliases =
+        finder.aliases(places.draw(options.seed, static_cast<std::uint32_t>(i)));
     const QueryCeiling query = query_ceiling(aliases, places);
     sum.unique_share += query.unaliased;
     sum.undetermined_share += !aliases.determined;
@@ -271,6 +273,8 @@ void add_world(CLI::App& app, Session& session) {
       ->capture_default_str();
   info_verb
       ->add_option("--protocol", i->protocol, "where they are: near_path, path, anywhere or free")
+      ->capture_default_str();
+  info_verb->add_option("--seed", i->seed, "of the views, which are the queries of a study with it")
       ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
   check_files_written(*info_verb, {"--plan"});

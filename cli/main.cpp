@@ -37,10 +37,29 @@ std::string not_expected(const CLI::App& app) {
   return images ? text + "; quote the pattern, for example 'left*.png'" : text;
 }
 
+/// The words of the command line, last one first, as CLI11 takes them. Help is given whatever else
+/// is on the line, which CLI11 would check first: then only the verb is left.
+std::vector<std::string> words_of(const CLI::App& app, int argc, char** argv) {
+  const std::vector<std::string> all(argv + 1, argv + argc);
+  const auto end = std::find(all.begin(), all.end(), "--");
+  const auto is_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
+  if (std::none_of(all.begin(), end, is_help)) return {all.rbegin(), all.rend()};
+  std::vector<std::string> words{"--help"};
+  const CLI::App* verb = &app;
+  for (auto word = all.begin(); word != end; ++word) {
+    const auto named =
+        verb->get_subcommands([&](const CLI::App* other) { return other->get_name() == *word; });
+    if (named.empty()) break;
+    verb = named.front();
+    words.insert(words.begin() + 1, *word);
+  }
+  return words;
+}
+
 /// Parses the command line and does what it says.
 void perform(CLI::App& app, vernier::cli::Session& session, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    app.parse(words_of(app, argc, argv));
   } catch (const CLI::Success& asked) {  // --help, --version
     std::ostringstream text;
     app.exit(asked, text, text);

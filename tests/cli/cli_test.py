@@ -85,6 +85,12 @@ class Help(Case):
         for verb in ('make', 'info'):
             self.assertIn('Example:', self.works('world', verb, '--help').stdout)
 
+    def test_help_is_given_whatever_else_is_wrong_on_the_line(self):
+        asked = self.works('world', 'info', '--help').stdout
+        for words in (['--poses', '-3'], ['--plan', 'missing/x.svg'], ['--nonsense'], ['a', 'b']):
+            self.assertEqual(self.works('world', 'info', *words, '--help').stdout, asked)
+            self.assertEqual(self.works('world', 'info', '-h', *words).stdout, asked)
+
     def test_version(self):
         self.assertRegex(self.works('--version').stdout, r'^vernier \d+\.\d+\.\d+\n$')
 

@@ -49,9 +49,13 @@ class World(verb_calls.ProgramCase):
         self.assertLessEqual(info['aliasing']['unique_share'], info['aliasing']['ceiling'])
         (self.folder / 'study.toml').write_text(
             '[study]\ntrials = 3\n[world]\nfile = "room.world.toml"\n')
-        study = subprocess.run([PROGRAM, 'study', 'study.toml', '-o', 'out', '--threads', '1'],
+        study = subprocess.run([PROGRAM, 'study', 'study.toml', '-o', 'out', '--threads', '1', '--json'],
                                capture_output=True, text=True, cwd=self.folder, timeout=120)
         self.assertIn(study.returncode, (0, 3), study.stderr)
+        cell = json.loads(study.stdout)['cells'][0]
+        same = self.done('info', 'room.world.toml', '--poses', 3, '--protocol', 'path', '--seed', 1)
+        self.assertAlmostEqual(cell['world_ceiling'], same['aliasing']['ceiling'], 12)
+        self.assertAlmostEqual(cell['unaliased_share'], same['aliasing']['unique_share'], 12)
 
     def test_buildings_of_every_kind_and_of_several(self):
         for kinds in ('office', 'home', 'hall', 'corridors', 'home,hall'):

@@ -143,7 +143,8 @@ std::string cost_text(const TuneResult& result) {
   const RaceCost& cost = result.cost;
   const int confirmed = result.winner.figures.trials + result.reference.figures.trials;
   return fmt::format(
-      "cost: {} trials of the {} of a full grid ({:.0f} %), {:.1f} s of CPU of about {:.1f};\n"
+      "cost: {} trials of the {} of a full grid ({:.0f} %); CPU of localising {:.1f} s of "
+      "about {:.1f};\n"
       "  confirmation {} trials, {:.1f} s\n",
       cost.trials, cost.grid_trials,
       100 * static_cast<double>(cost.trials) / static_cast<double>(cost.grid_trials), cost.cpu_s,

@@ -49,6 +49,7 @@ std::vector<std::string> words_of(const CLI::App& app, int argc, char** argv) {
   for (auto word = all.begin(); word != end; ++word) {
     const auto named =
         verb->get_subcommands([&](const CLI::App* other) { return other->get_name() == *word; });
+    if (named.empty() && word->starts_with('-')) continue;
     if (named.empty()) break;
     verb = named.front();
     words.insert(words.begin() + 1, *word);

@@ -62,7 +62,8 @@ class QueryPlaces {
   double density(const localise::Pose2D& pose) const;
 
  private:
-  bool is_reached(const localise::Pose2D& pose, const Eigen::Vector2d& on_route_m) const;
+  bool is_free_at(const localise::Pose2D& pose) const;
+  bool is_seen_from(const Eigen::Vector2d& on_route_m, const localise::Pose2D& pose) const;
 
   const Visibility& visibility_;
   QueryProtocol protocol_;

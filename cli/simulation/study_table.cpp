@@ -150,8 +150,9 @@ std::string ceiling_line(const CellFigures& figures) {
   for (std::size_t i = 0; i < figures.summaries.size(); ++i) {
     if (!exceeds_ceiling(figures.summaries[i], figures.ceilings[i])) continue;
     return text +
-           "success exceeds the ceiling, which counts views that fit poses in a continuum as "
-           "wrong\n";
+           "success exceeds the ceiling, which is of one look, by lines without corners, and "
+           "counts "
+           "views that fit poses in a continuum as wrong\n";
   }
   return text;
 }

@@ -26,6 +26,7 @@
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_sets.h"
 #include "cli/simulation/world_view.h"
+#include "localise/place.h"
 #include "sim/buildings/building.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
@@ -113,8 +114,9 @@ Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
     const Aliases aliases =
-        finder.aliases(places.draw(options.seed, static_cast<std::uint32_t>(i)));
-    const QueryCeiling query = query_ceiling(aliases, places);
+        finder.aliases(places.draw(options.seed, static_cast<std::uint32_t>(i)),
+                       [&](const localise::Pose2D& pose) { return places.density(pose); });
+    const QueryCeiling query = query_ceiling(aliases);
     sum.unique_share += query.unaliased;
     sum.undetermined_share += !aliases.determined;
     sum.ceiling += query.right;
@@ -165,6 +167,7 @@ void make(const MakeOptions& options, Session& session) {
 }
 
 void info(const InfoOptions& options, Session& session) {
+  query_protocol(options.protocol);  // refuses others, used or not
   const std::filesystem::path file = find_world(options.world);
   const World world = build_world(read_world(file));
   if (!options.plan.empty()) write_atomically(options.plan, plan_svg(world));
@@ -274,7 +277,9 @@ void add_world(CLI::App& app, Session& session) {
   info_verb
       ->add_option("--protocol", i->protocol, "where they are: near_path, path, anywhere or free")
       ->capture_default_str();
-  info_verb->add_option("--seed", i->seed, "of the views, which are the queries of a study with it")
+  info_verb
+      ->add_option("--seed", i->seed,
+                   "of the views, which are the queries of a study with it and the protocol")
       ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
   check_files_written(*info_verb, {"--plan"});

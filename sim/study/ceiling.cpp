@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/floor_grid.h"
 #include "sim/study/free_floor.h"
@@ -26,9 +26,8 @@ using namespace localise;
 namespace {
 
 constexpr double missing_share = 0.05;  ///< of the image length, that may differ
-constexpr double right_within_m = 1;    ///< of the truth, an answer is right
-constexpr double same_place_m = 0.5;    ///< hypotheses that close are one, if their headings are
-constexpr double same_heading_rad = 0.2;
+constexpr double same_place_m = 0.15;    ///< hypotheses that close are one, if their headings are
+constexpr double same_heading_rad = 0.1;
 constexpr std::size_t most_aliases = 1000;  ///< a ceiling below 0.1 % is none
 
 /// Whether two pairs of edges gave the same pose, up to rounding.
@@ -73,9 +72,13 @@ double heaviest_disc(const std::vector<Eigen::Vector2d>& points,
                      double r) {
   double heaviest = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<std::size_t> near;  // no disc that holds point i holds others
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if ((points[k] - points[i]).norm() <= 2 * r + 1e-9) near.push_back(k);
+    }
     for (const Eigen::Vector2d& centre : disc_centres(points, i, r)) {
       double sum = 0;
-      for (std::size_t k = 0; k < points.size(); ++k) {
+      for (const std::size_t k : near) {
         if ((points[k] - centre).norm() <= r + 1e-9) sum += weights[k];
       }
       heaviest = std::max(heaviest, sum);
@@ -92,23 +95,12 @@ int Aliases::elsewhere() const {
   }));
 }
 
-QueryCeiling query_ceiling(const Aliases& aliases, const QueryPlaces& places) {
+QueryCeiling query_ceiling(const Aliases& aliases) {
   if (!aliases.determined) return {};
-  QueryCeiling ceiling{.unaliased = true};
   std::vector<Eigen::Vector2d> points;
-  std::vector<double> weights;
-  double all = 0;
-  for (const Pose2D& pose : aliases.poses) {
-    const bool asked = points.empty();  // the query itself is possible, whatever rounding says
-    const double weight = std::max(places.density(pose), asked ? 1.0 : 0.0);
-    if (!(weight > 0)) continue;
-    points.emplace_back(pose.x_m, pose.y_m);
-    weights.push_back(weight);
-    all += weight;
-    if (distance_m(pose, aliases.poses[0]) > right_within_m) ceiling.unaliased = false;
-  }
-  ceiling.right = heaviest_disc(points, weights, right_within_m) / all;
-  return ceiling;
+  for (const Pose2D& pose : aliases.poses) points.emplace_back(pose.x_m, pose.y_m);
+  const double all = std::accumulate(aliases.weights.begin(), aliases.weights.end(), 0.0);
+  return {heaviest_disc(points, aliases.weights, right_within_m) / all, aliases.elsewhere() == 0};
 }
 
 AliasFinder::AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options)
@@ -149,17 +141,18 @@ bool AliasFinder::looks_like(const std::vector<ViewEdge>& view, const Pose2D& po
   return mostly(there, in(view)) && mostly(view, in(there));
 }
 
-Aliases AliasFinder::aliases(const Pose2D& pose) const {
+Aliases AliasFinder::aliases(const Pose2D& pose, const Density& density) const {
   Aliases result;
   const View view(edges_in_view(visibility_, rig_, options_, pose));
   std::vector<Pose2D>& found = result.poses;
   std::vector<Pose2D> rejected;
   FloorGrid found_at(same_place_m), rejected_at(same_place_m);
-  const auto add = [&](const Pose2D& other) {
+  const auto add = [&](const Pose2D& other, double weight) {
     found_at.add({other.x_m, other.y_m}, static_cast<int>(found.size()));
     found.push_back(other);
+    result.weights.push_back(weight);
   };
-  add(pose);
+  add(pose, std::max(density(pose), 1.0));  // it is possible, whatever rounding says
   const auto try_one = [&](const Pose2D& other) {
     const auto same = [&](int i) {
       return distance_m(found[i], other) < same_place_m &&
@@ -173,12 +166,13 @@ Aliases AliasFinder::aliases(const Pose2D& pose) const {
     if (rejected_at.any_near(at, 0, [&](int i) { return is_one_pose(rejected[i], other); })) {
       return false;
     }
-    if (!looks_like(view.edges, other)) {
+    const double weight = density(other);
+    if (!(weight > 0) || !looks_like(view.edges, other)) {
       rejected_at.add(at, static_cast<int>(rejected.size()));
       rejected.push_back(other);
       return false;
     }
-    add(other);
+    add(other, weight);
     return found.size() > most_aliases;
   };
   result.determined = LookAlikePoses(frame_).visit(view.edges, missing_share, try_one);

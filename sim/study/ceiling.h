@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/look_alike_poses.h"
@@ -16,15 +16,19 @@
 
 namespace vernier::sim::internal {
 
+/// An answer so close to the truth is right.
+inline constexpr double right_within_m = 1;
+
 /// Poses that cannot be distinguished from a given one.
 struct Aliases {
   /// Whether the view determines a pose up to finitely many others. It does not without two upright
   /// or level edges, with uprights at one place of the floor only, or with parallel level edges
-  /// only.
+  /// only. False too where there are too many level edges to try.
   bool determined = true;
   /// The given pose, then those with the same noise-free view, at any distance and heading; the
-  /// search ends at 1000.
+  /// search ends at 1000. Poses closer than 0.15 m and 0.1 rad are one.
   std::vector<localise::Pose2D> poses;
+  std::vector<double> weights;  ///< one a pose, above 0
   /// Those more than 1 m from the given one.
   int elsewhere() const;
 };
@@ -33,7 +37,7 @@ struct Aliases {
 struct QueryCeiling {
   /// Probability that the best guess is within 1 m; 0 where the poses are a continuum.
   double right = 0;
-  /// Whether no pose more than 1 m away, at which the protocol asks, looks the same.
+  /// Whether no pose of positive weight more than 1 m away looks the same.
   bool unaliased = false;
   bool operator==(const QueryCeiling&) const = default;
 };
@@ -41,14 +45,14 @@ struct QueryCeiling {
 /// By query; nothing of those that are not computed yet.
 using QueryCeilings = std::vector<std::optional<QueryCeiling>>;
 
-/// The best guess of who knows the world, the protocol and a noise-free view. Of poses that look
-/// the same each has the posterior density w_i / sum w, w = QueryPlaces::density: look-alikes are
-/// rigid motions of each other, which keep volumes. The best guess is the disc of 1 m on the floor
-/// with the greatest sum; no localiser answers better in the mean over the protocol's queries.
-QueryCeiling query_ceiling(const Aliases& aliases, const QueryPlaces& places);
+/// The best guess from one noise-free look, by who knows the world and how likely each pose is
+/// beforehand. Of poses that look the same each has the posterior w_i / sum w: they are rigid
+/// motions of each other, which keep volumes. The best guess is the disc of 1 m on the floor with
+/// the greatest sum.
+QueryCeiling query_ceiling(const Aliases& aliases);
 
-/// Finds all poses from which the world looks the same as from a given one: the upper limit of any
-/// localiser's success rate, computed without a localiser.
+/// Finds all poses from which the world looks the same as from a given one: what limits the success
+/// of any localiser of one look that goes by lines, computed without a localiser.
 ///
 /// Noise-free. A view is the edges that both cameras see, as lines in space: what a localiser gets,
 /// but for its corners. Of the poses that fit two edges of it to the world (look_alike_poses.h),
@@ -60,7 +64,14 @@ class AliasFinder {
   /// Keeps a reference to `visibility`; `rig` is the true rig.
   AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options);
 
-  Aliases aliases(const localise::Pose2D& pose) const;
+  /// A relative density of the queries, as QueryPlaces::density.
+  using Density = std::function<double(const localise::Pose2D&)>;
+
+  /// Aliases at which the density is above 0, with it as their weight. The given pose counts at
+  /// least 1.
+  Aliases aliases(
+      const localise::Pose2D& pose,
+      const Density& density = [](const localise::Pose2D&) { return 1.0; }) const;
 
  private:
   struct View {

@@ -26,6 +26,7 @@ constexpr double least_base_m = 0.3;  ///< between two uprights that give a pose
 constexpr std::size_t most_pairs = 6;
 constexpr int most_uprights = 48;  ///< the longest of a view, of which pairs are chosen
 constexpr double most_work = 1e7;  ///< tried edges of a view, after which no pair is added
+constexpr int most_level_work = 1'000'000;  ///< tried level edges of one pair
 
 /// The pose that brings `seen_m` (robot frame) to `there_m`, after a turn.
 Pose2D pose_that_brings(const Eigen::Vector2d& seen_m,
@@ -79,6 +80,13 @@ Eigen::Vector2d crossing(const Eigen::Vector2d& p,
   return p + sine_between(q - p, e) / sine_between(d, e) * d;
 }
 
+/// All of the floor at a height.
+Eigen::AlignedBox3d at_height(double z_m) {
+  constexpr double far_m = 1e9;
+  const Eigen::Vector3d any(far_m, far_m, UprightEdges::tolerance_m), middle(0, 0, z_m);
+  return {middle - any, middle + any};
+}
+
 bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, const Visit& fits) {
   const Eigen::Vector2d along = direction_of(level.a_m, level.b_m);
   const double apart = left_of(p.at_m, level.a_m.head<2>(), along);
@@ -96,39 +104,55 @@ bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, 
         if (enough || std::abs(there - apart) > slack_m) continue;
         enough = fits(pose_that_brings(p.at_m, a.at_m, angle(direction) - angle(along)));
       }
+      return enough;
     });
   });
   return enough;
 }
 
-/// Up to six pairs of level edges that are not parallel, long ones first.
-template <class Pair>
-void pair_levels(const std::vector<ViewEdge>& view, double needed_px, std::vector<Pair>& pairs) {
+}  // namespace
+
+/// Of the longest level edges those that are rarest at their height, each with the next that is not
+/// parallel.
+void LookAlikePoses::pair_levels(const std::vector<ViewEdge>& view,
+                                 double needed_px,
+                                 std::vector<Pair>& pairs) const {
   constexpr double least_sine = 0.17;  // 10 degrees
-  std::vector<char> used(view.size(), 0);
-  for (std::size_t i = 0; i < view.size(); ++i) {
-    for (std::size_t j = i + 1; j < view.size() && view[i].level && !used[i]; ++j) {
+  constexpr std::size_t most_levels = 12;
+  struct Level {
+    int edge, alike = 0;
+  };
+  std::vector<Level> levels;
+  for (int i = 0; i < static_cast<int>(view.size()) && levels.size() < most_levels; ++i) {
+    if (!view[i].level) continue;
+    Level& level = levels.emplace_back(Level{i});
+    frame_.visit_level(at_height(view[i].a_m.z()), [&](const WorldSegment&) {
+      ++level.alike;
+      return level.alike > most_level_work;
+    });
+  }
+  std::stable_sort(levels.begin(), levels.end(),
+                   [](const Level& a, const Level& b) { return a.alike < b.alike; });
+  std::vector<char> used(levels.size(), 0);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const ViewEdge& p = view[levels[i].edge];
+    for (std::size_t j = i + 1; j < levels.size() && !used[i]; ++j) {
       if (needed_px <= 0 || pairs.size() >= most_pairs) return;
-      if (!view[j].level || used[j]) continue;
-      const double sine = sine_between(direction_of(view[i].a_m, view[i].b_m),
-                                       direction_of(view[j].a_m, view[j].b_m));
-      if (std::abs(sine) < least_sine) continue;
+      const ViewEdge& q = view[levels[j].edge];
+      const double sine = sine_between(direction_of(p.a_m, p.b_m), direction_of(q.a_m, q.b_m));
+      if (used[j] || std::abs(sine) < least_sine) continue;
       used[i] = used[j] = 1;
-      needed_px -= view[j].length_px;  // the shorter one
-      pairs.push_back({static_cast<int>(i), static_cast<int>(j)});
+      needed_px -= std::min(p.length_px, q.length_px);
+      pairs.push_back({levels[i].edge, levels[j].edge});
     }
   }
 }
 
-}  // namespace
-
 /// The lines through the edges cross at one point of the view and at one of the world.
-bool LookAlikePoses::fit_levels(const ViewEdge& p,
-                                const ViewEdge& q,
-                                const Visit& fits,
-                                double& tried) const {
-  constexpr double far_m = 1e9, slack_sine = 0.01;
-  const Eigen::Vector3d any(far_m, far_m, UprightEdges::tolerance_m);
+LookAlikePoses::Tried LookAlikePoses::fit_levels(const ViewEdge& p,
+                                                 const ViewEdge& q,
+                                                 const Visit& fits) const {
+  constexpr double slack_sine = 0.01;
   const Eigen::Vector2d along_p = direction_of(p.a_m, p.b_m), along_q = direction_of(q.a_m, q.b_m);
   const Eigen::Vector2d seen = crossing(p.a_m.head<2>(), along_p, q.a_m.head<2>(), along_q);
   const double sine = sine_between(along_p, along_q), cosine = along_p.dot(along_q);
@@ -138,13 +162,12 @@ bool LookAlikePoses::fit_levels(const ViewEdge& p,
       reach = std::max(reach, (of_p - of_q).head<2>().norm() + slack_m);
     }
   }
-  bool enough = false;
   const auto fit = [&](const WorldSegment& a, const WorldSegment& b, double side) {
     const Eigen::Vector2d along_a = side * direction_of(a.a_m, a.b_m);
     const Eigen::Vector2d along_b = direction_of(b.a_m, b.b_m);
     const double sine_there = sine_between(along_a, along_b), cosine_there = along_a.dot(along_b);
     // b is seen in one direction or the other
-    if (std::abs(sine_there * cosine - cosine_there * sine) > slack_sine) return;
+    if (std::abs(sine_there * cosine - cosine_there * sine) > slack_sine) return false;
     const Pose2D pose =
         pose_that_brings(seen, crossing(a.a_m.head<2>(), along_a, b.a_m.head<2>(), along_b),
                          angle(along_a) - angle(along_p));
@@ -153,22 +176,27 @@ bool LookAlikePoses::fit_levels(const ViewEdge& p,
       return lies_on(moved(edge.a_m), segment.a_m, segment.b_m) &&
              lies_on(moved(edge.b_m), segment.a_m, segment.b_m);
     };
-    if (on(p, a) && on(q, b)) enough = fits(pose);
+    return on(p, a) && on(q, b) && fits(pose);
   };
-  const Eigen::Vector3d height_p(0, 0, p.a_m.z());
-  frame_.visit_level({height_p - any, height_p + any}, [&](const WorldSegment& a) {
-    if (enough || ++tried > most_work) return;
+  Tried tried;
+  double work = 0;
+  const auto is_over = [&] {
+    tried.all = tried.all && ++work <= most_level_work;
+    return tried.enough || !tried.all;
+  };
+  frame_.visit_level(at_height(p.a_m.z()), [&](const WorldSegment& a) {
+    if (is_over()) return true;
     const Eigen::Vector3d around(reach, reach, UprightEdges::tolerance_m);
     Eigen::Vector3d low = a.a_m.cwiseMin(a.b_m), high = a.a_m.cwiseMax(a.b_m);
     low.z() = high.z() = q.a_m.z();
     frame_.visit_level({low - around, high + around}, [&](const WorldSegment& b) {
-      if (enough || ++tried > most_work) return;
-      for (const double side : {1.0, -1.0}) {
-        if (!enough) fit(a, b, side);
-      }
+      if (is_over()) return true;
+      tried.enough = fit(a, b, 1) || fit(a, b, -1);
+      return tried.enough;
     });
+    return tried.enough;
   });
-  return enough;
+  return tried;
 }
 
 /// Takes the pair that is quickest to fit for its length, again and again. Below 1 m of distance
@@ -241,21 +269,21 @@ std::vector<LookAlikePoses::Pair> LookAlikePoses::pairs(const std::vector<ViewEd
 bool LookAlikePoses::visit(const std::vector<ViewEdge>& view,
                            double needed_share,
                            const Visit& visit) const {
-  const std::vector<Pair> chosen = pairs(view, needed_share);
-  double tried = 0;
-  for (const auto& [first, second] : chosen) {
+  bool complete = false;  // all poses that one pair gives
+  for (const auto& [first, second] : pairs(view, needed_share)) {
     const auto p = upright_of(view[first]), q = upright_of(view[second]);
-    bool enough = false;
+    Tried tried;
     if (!p) {
-      enough = fit_levels(view[first], view[second], visit, tried);
+      tried = fit_levels(view[first], view[second], visit);
     } else if (q) {
-      enough = fit_uprights(frame_.uprights(), *p, *q, visit);
+      tried.enough = fit_uprights(frame_.uprights(), *p, *q, visit);
     } else {
-      enough = fit_level(frame_, *p, view[second], visit);
+      tried.enough = fit_level(frame_, *p, view[second], visit);
     }
-    if (enough) break;
+    complete = complete || tried.all;
+    if (tried.enough) break;
   }
-  return !chosen.empty() && tried <= most_work;
+  return complete;
 }
 
 }  // namespace vernier::sim::internal

@@ -31,8 +31,8 @@ class LookAlikePoses {
   explicit LookAlikePoses(const WireFrame& frame) : frame_(frame) {}
 
   /// Calls `visit` for every pose, some of them more than once, until it returns true. False if
-  /// the view has no such pair (it then fits poses in a continuum, or any at all) or too many level
-  /// edges to try.
+  /// the view has no such pair (it then fits poses in a continuum, or any at all), or if there are
+  /// too many level edges to try for each pair.
   bool visit(const std::vector<ViewEdge>& view,
              double needed_share,
              const std::function<bool(const localise::Pose2D&)>& visit) const;
@@ -46,10 +46,15 @@ class LookAlikePoses {
                      double needed_px,
                      std::vector<Pair>& pairs,
                      std::vector<char>& used) const;
-  bool fit_levels(const ViewEdge& p,
-                  const ViewEdge& q,
-                  const std::function<bool(const localise::Pose2D&)>& fits,
-                  double& tried) const;
+  void pair_levels(const std::vector<ViewEdge>& view,
+                   double needed_px,
+                   std::vector<Pair>& pairs) const;
+  struct Tried {
+    bool enough = false, all = true;  ///< that `fits` wants; that there are
+  };
+  Tried fit_levels(const ViewEdge& p,
+                   const ViewEdge& q,
+                   const std::function<bool(const localise::Pose2D&)>& fits) const;
 
   const WireFrame& frame_;
 };

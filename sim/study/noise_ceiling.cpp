@@ -14,6 +14,7 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/floor_grid.h"
 #include "sim/study/look_alike_poses.h"
 #include "sim/study/wire_frame.h"
@@ -74,7 +75,7 @@ std::optional<std::vector<Pose2D>> NoiseCeiling::rivals(const Pose2D& pose) cons
   const bool determined = LookAlikePoses(frame_).visit(view, pair_share, [&](const Pose2D& other) {
     const Eigen::Vector2d at(other.x_m, other.y_m);
     const auto same = [&](int i) { return distance_m(found[i], other) < same_rival_m; };
-    if (distance_m(other, pose) <= 1 || !standing_.in_box(at)) return false;
+    if (distance_m(other, pose) <= right_within_m || !standing_.in_box(at)) return false;
     if (found_at.any_near(at, same_rival_m, same)) return false;
     const FloorMotion moved(other);
     double on_frame_px = 0;

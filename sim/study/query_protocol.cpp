@@ -75,16 +75,19 @@ Pose2D QueryPlaces::draw(std::uint64_t seed, std::uint32_t trial) const {
     const double across = draws.uniform(-reach.across_m, reach.across_m);
     const double turn = draws.uniform(-reach.heading_rad, reach.heading_rad);
     const Pose2D query = compose(on_route, {0, across, turn});
-    if (is_reached(query, {on_route.x_m, on_route.y_m})) return query;
+    if (is_free_at(query) && is_seen_from({on_route.x_m, on_route.y_m}, query)) return query;
   }
   throw Error("queries", "no free position near the route in 1000 draws",
               "move the route through free space");
 }
 
-bool QueryPlaces::is_reached(const Pose2D& pose, const Eigen::Vector2d& on_route_m) const {
-  const double top_m = eye_height_m_ + robot_top_m;
-  return is_free(visibility_.world(), {pose.x_m, pose.y_m}, robot_radius_m, top_m) &&
-         visibility_.sees({on_route_m.x(), on_route_m.y(), eye_height_m_},
+bool QueryPlaces::is_free_at(const Pose2D& pose) const {
+  return is_free(visibility_.world(), {pose.x_m, pose.y_m}, robot_radius_m,
+                 eye_height_m_ + robot_top_m);
+}
+
+bool QueryPlaces::is_seen_from(const Eigen::Vector2d& on_route_m, const Pose2D& pose) const {
+  return visibility_.sees({on_route_m.x(), on_route_m.y(), eye_height_m_},
                           {pose.x_m, pose.y_m, eye_height_m_});
 }
 
@@ -107,10 +110,10 @@ double QueryPlaces::density(const Pose2D& pose) const {
       const Pose2D on_route{foot.x(), foot.y(), std::atan2(ahead.y(), ahead.x())};
       const double turn = heading_difference_rad(on_route, pose);
       if (std::abs(turn) > reach.heading_rad + rounding) continue;
-      if (is_reached(pose, foot)) density += 1;
+      if (is_seen_from(foot, pose)) density += 1;
     }
   }
-  return density;
+  return density > 0 && is_free_at(pose) ? density : 0;
 }
 
 Pose2D draw_query(const Visibility& visibility,

@@ -101,7 +101,7 @@ struct StudyRun {
 /// threads are asked for, never lowered, and a limit that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
-/// The limit that a world sets for any localiser, for the queries of a cell (ceiling.h).
+/// The limit that a world sets for localisers of one look, for the queries of a cell (ceiling.h).
 struct WorldCeiling {
   double success = 1;    ///< mean success of the best guess among poses that look the same
   double unaliased = 1;  ///< share of the views that no other pose has at which the protocol asks

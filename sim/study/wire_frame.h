@@ -60,14 +60,11 @@ class WireFrame {
   /// Whether one edge has both points on it, to UprightEdges::tolerance_m.
   bool has(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const;
 
-  /// Calls visit(segment) for the level edges whose boxes meet `box`.
+  /// Calls visit(segment) for the level edges whose boxes meet `box`, until it returns true.
   template <class Visit>
   void visit_level(const Eigen::AlignedBox3d& box, Visit visit) const {
     level_.visit([&](const Eigen::AlignedBox3d& other) { return box.intersects(other); },
-                 [&](int i) {
-                   visit(world_.segments[level_number_[i]]);
-                   return false;
-                 });
+                 [&](int i) { return visit(world_.segments[level_number_[i]]); });
   }
 
  private:

@@ -90,6 +90,7 @@ class Help(Case):
         for words in (['--poses', '-3'], ['--plan', 'missing/x.svg'], ['--nonsense'], ['a', 'b']):
             self.assertEqual(self.works('world', 'info', *words, '--help').stdout, asked)
             self.assertEqual(self.works('world', 'info', '-h', *words).stdout, asked)
+            self.assertEqual(self.works('world', '--nonsense', 'info', *words, '-h').stdout, asked)
 
     def test_version(self):
         self.assertRegex(self.works('--version').stdout, r'^vernier \d+\.\d+\.\d+\n$')

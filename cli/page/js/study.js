@@ -85,7 +85,7 @@ function headline_tiles(report, cell) {
   return [
     tile("Query protocol", protocol, PROTOCOLS[protocol]),
     tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: the most that`
-      + ` any localiser can have`),
+      + ` one look at lines allows`),
     tile("Median error", metres(cell.median_error_m), is_number(cell.median_heading_error_deg)
       && `and ${significant(cell.median_heading_error_deg, 2)}° in heading, of answered queries`),
     tile("CPU time per query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)

@@ -6,7 +6,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -69,9 +71,19 @@ Aliases aliases_of(const World& world, const Pose2D& pose) {
   return AliasFinder(visibility, test::nominal_rig().rig, {}).aliases(pose);
 }
 
-QueryCeiling ceiling_of(const World& world, QueryProtocol protocol, const Aliases& aliases) {
+/// Of poses that look the same, by where a protocol asks in a world.
+QueryCeiling ceiling_of(const World& world,
+                        QueryProtocol protocol,
+                        const std::vector<Pose2D>& alike) {
   const Visibility visibility(world);
-  return query_ceiling(aliases, QueryPlaces(visibility, protocol, 1.2));
+  const QueryPlaces places(visibility, protocol, 1.2);
+  Aliases asked;
+  for (const Pose2D& pose : alike) {
+    if (!(places.density(pose) > 0)) continue;
+    asked.poses.push_back(pose);
+    asked.weights.push_back(places.density(pose));
+  }
+  return query_ceiling(asked);
 }
 
 const Pose2D to_the_far_wall{2, 2, std::numbers::pi / 2};
@@ -96,7 +108,7 @@ TEST(AliasFinder, TwoUprightsAtOnePlaceAreAsOne) {
   const World two = twin_rooms_with(stack);
   const Aliases alone = aliases_of(two, to_the_far_wall);
   EXPECT_FALSE(alone.determined);
-  EXPECT_EQ(ceiling_of(two, QueryProtocol::path, alone), (QueryCeiling{0, false}));
+  EXPECT_EQ(query_ceiling(alone), (QueryCeiling{0, false}));
   const World with_level = twin_rooms_with([&](FeatureSet& f, double x) {
     stack(f, x);
     f.segments_m.push_back({{x + 1.8, 5, 1.4}, {x + 2.4, 5, 1.4}});
@@ -125,7 +137,7 @@ World twin_rooms_with_route(const std::vector<RouteLeg>& route) {
 TEST(QueryCeiling, GoesByWhereTheProtocolAsks) {
   const RouteLeg here{{{2, 0.5}, {2, 4}}}, there{{{12, 0.5}, {12, 4}}}, back{{{12, 4}, {12, 0.5}}};
   const double up = std::numbers::pi / 2;
-  const Aliases two{.poses = {{2, 2, up}, {12, 2, up}}};
+  const std::vector<Pose2D> two{{2, 2, up}, {12, 2, up}};
   const auto of = [&](const std::vector<RouteLeg>& route, QueryProtocol protocol) {
     return ceiling_of(twin_rooms_with_route(route), protocol, two);
   };
@@ -145,7 +157,7 @@ TEST(QueryCeiling, GoesByWhereTheProtocolAsks) {
 TEST(QueryCeiling, OneGuessHoldsAllPosesOfItsDisc) {
   const World world = twin_rooms_with_route({{{{2, 0.5}, {2, 4}}}, {{{12, 0.5}, {12, 4}}}});
   const auto right = [&](const std::vector<Pose2D>& poses) {
-    return ceiling_of(world, QueryProtocol::anywhere, {.poses = poses}).right;
+    return ceiling_of(world, QueryProtocol::anywhere, poses).right;
   };
   EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {12, 1, 1}, {12, 1, 2}}), 2.0 / 3);
   EXPECT_DOUBLE_EQ(right({{2, 1, 1}, {12, 1, 1}, {12, 2.9, 1}}), 2.0 / 3);
@@ -284,7 +296,8 @@ TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {
   double sum = 0;
   const auto places = map_poses(test::small_office().route, 2);
   const QueryPlaces queries(test::small_office_visibility(), QueryProtocol::anywhere, 1.2);
-  for (const Pose2D& place : places) sum += query_ceiling(finder.aliases(place), queries).right;
+  const auto density = [&](const Pose2D& pose) { return queries.density(pose); };
+  for (const Pose2D& place : places) sum += query_ceiling(finder.aliases(place, density)).right;
   EXPECT_GT(sum / static_cast<double>(places.size()), 0.9);
 }
 
@@ -320,6 +333,55 @@ TEST(AliasFinder, StopsAtAThousandAliases) {
   const Visibility visibility(world);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
   EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere(), 1000);
+  // The protocol asks in the query's room and in the last two, beyond the first 1000.
+  world.route = {{{{2, 0.5}, {2, 2}}}};
+  for (const double x : {11'972.0, 11'982.0}) {
+    world.route.push_back({{{x, 0.5}, {x, 2}}});
+  }
+  const Visibility asked_in_three(world);
+  const QueryPlaces places(asked_in_three, QueryProtocol::path, 1.2);
+  const Aliases three =
+      finder.aliases({2, 1, 1.5}, [&](const Pose2D& pose) { return places.density(pose); });
+  EXPECT_EQ(three.elsewhere(), 2);
+  EXPECT_DOUBLE_EQ(query_ceiling(three).right, 1.0 / 3);
+}
+
+// Boards every 0.4 m along a wall, seen from two legs 5.2 m apart: the aliases between, at which no
+// query is, stand for neither.
+TEST(AliasFinder, AliasesOfAShortPeriodAreToldApart) {
+  WorldDescription d;
+  d.loose.surfaces_m.push_back({{-4, 3, 0}, {24, 3, 0}, {24, 3, 2.5}, {-4, 3, 2.5}});
+  for (int i = 0; i < 70; ++i) {
+    const double x = -4 + 0.4 * i;
+    d.loose.segments_m.push_back({{x, 3, 0.6}, {x, 3, 1.8}});
+  }
+  for (const double x : {8.0, 13.2}) d.route.push_back({{{x, 0}, {x, 0.4}}});
+  const World world = build_world(d);
+  const Visibility visibility(world);
+  const AliasFinder finder(visibility, test::nominal_rig().rig, {});
+  const QueryPlaces places(visibility, QueryProtocol::near_path, 1.2);
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    const Aliases found = finder.aliases(places.draw(3, trial),
+                                         [&](const Pose2D& pose) { return places.density(pose); });
+    EXPECT_EQ(query_ceiling(found), (QueryCeiling{0.5, false})) << trial;
+  }
+}
+
+// Level edges of one height in one room, all crossing: pairs are tried up to a million.
+TEST(AliasFinder, TooManyLevelEdgesLeaveThePoseOpen) {
+  const auto edges = [](int count, double side_m) {
+    World world;
+    world.objects.resize(1);
+    RandomStream draws({.seed = 8});
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector3d at(draws.uniform(0, side_m), draws.uniform(0, side_m), 1.5);
+      const double turn = draws.uniform(0, std::numbers::pi);
+      world.segments.push_back({at, at + Eigen::Vector3d(std::cos(turn), std::sin(turn), 0), 0});
+    }
+    return world;
+  };
+  EXPECT_TRUE(aliases_of(edges(200, 20), {10, 10, 0.3}).determined);
+  EXPECT_FALSE(aliases_of(edges(4000, 10), {5, 5, 0.3}).determined);
 }
 
 }  // namespace

@@ -101,6 +101,29 @@ TEST(QueryProtocol, ItsDensityIsThatOfItsDraws) {
   }
 }
 
+// Two straight parts that meet at a right angle: inside the bend a pose may be drawn from both,
+// outside it from none; headings around half a turn are near each other.
+TEST(QueryProtocol, ItsDensityCountsTheStraightPartsAPoseIsDrawnFrom) {
+  WorldDescription d;
+  d.loose.segments_m.push_back({{-5, -5, 0}, {-5, -5, 2}});
+  d.loose.segments_m.push_back({{5, 5, 0}, {5, 5, 2}});
+  d.route.push_back({{{2, 0}, {0, 0}, {0, 2}}});
+  const World world = build_world(d);
+  const Visibility visibility(world);
+  constexpr double half_turn = std::numbers::pi;
+  const auto of = [&](QueryProtocol protocol, const Pose2D& pose) {
+    return QueryPlaces(visibility, protocol, 1.2).density(pose);
+  };
+  EXPECT_EQ(of(QueryProtocol::anywhere, {0.3, 0.4, 1}), 2);
+  EXPECT_EQ(of(QueryProtocol::anywhere, {-0.1, -0.1, 1}), 0);
+  EXPECT_EQ(of(QueryProtocol::anywhere, {0, 2.1, 1}), 0);
+  EXPECT_EQ(of(QueryProtocol::near_path, {1, 0.09, half_turn - 0.08}), 1);
+  EXPECT_EQ(of(QueryProtocol::near_path, {1, 0.09, 0.08 - half_turn}), 1);
+  EXPECT_EQ(of(QueryProtocol::near_path, {1, 0.09, 0.1 - half_turn}), 0);
+  EXPECT_EQ(of(QueryProtocol::near_path, {1, 0.11, half_turn}), 0);
+  EXPECT_EQ(of(QueryProtocol::near_path, {1, 0, 0}), 0);
+}
+
 TEST(QueryProtocol, TheSameTrialAsksInTheSamePlace) {
   const auto draw = [](std::uint32_t trial) {
     return draw_query(test::small_office_visibility(), QueryProtocol::path, 1.2, 5, trial);

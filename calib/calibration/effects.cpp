@@ -16,6 +16,7 @@
 #include "calib/calibration/change_findings.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/error.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
@@ -27,8 +28,9 @@
 namespace vernier::internal {
 namespace {
 
-constexpr double level = 0.01;  // of the tests
-constexpr int fewest_views_of_effects = 8;
+constexpr double level = 0.01;        // of the tests
+constexpr double bend_level = 0.005;  // its p-values are a little too small
+constexpr int fewest_views_of_effects = 8, fewest_views_of_bends = 4;
 constexpr std::size_t most_points_of_effects = 150;
 constexpr const char* no_minimum =
     "no minimum with the board's shape and motion was found; calibrate without --board-shape and "
@@ -55,8 +57,8 @@ std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOption
   const CalibrationSummary& summary = *usual.calibration;
   if (options.warp == BoardWarp::free) return "the board's warp is estimated";
   if (options.pixel_sigma_px > 0 || options.white_noise) return "the noise is given";
-  if (summary.views < fewest_views_of_effects) {
-    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_effects);
+  if (summary.views < fewest_views_of_bends) {
+    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_bends);
   }
   for (const std::string& doubt : summary.trust_warnings) {
     if (!doubt.starts_with(bent_board_doubt)) return "the calibration is doubtful";
@@ -111,13 +113,20 @@ void move_to_effects(const CalibrationOptions& options,
   summary.trust_warnings.emplace_back(no_minimum);
 }
 
-bool EffectsTest::has_shape() const { return shape && shape->p_value < level; }
+bool EffectsTest::has_bend() const { return bend && bend->p_value < bend_level; }
+bool EffectsTest::has_shape() const { return has_bend() || (shape && shape->p_value < level); }
 bool EffectsTest::has_motion() const { return motion && motion->p_value < level; }
 
 EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options) {
   EffectsTest test;
   test.not_tested = reason_not_to_test(usual, options);
   if (!test.not_tested.empty()) return test;
+  const int views = usual.calibration->views;
+  if (views < fewest_views_of_effects) {
+    test.bend = board_test(usual, bend_fields(usual.evidence->observations.target_m));
+    test.not_tested = fmt::format("{} views; it takes {}", views, fewest_views_of_effects);
+    return test;
+  }
   const bool moves = usual.rig.cameras.size() > 1;
   const NoiseParts all{.motion = moves, .shape = true, .baseline_motion = moves};
   const CornerNoiseEstimate found =

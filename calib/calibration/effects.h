@@ -9,6 +9,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/rig_estimate.h"
 #include "calib/solver/linearised_cost.h"
@@ -34,22 +35,25 @@ void move_to_effects(const CalibrationOptions& options,
 
 /// Whether a calibration's corners show the shape of the board, and its motion between exposures:
 /// likelihood ratio tests at 1 % (calib/noise/component_tests.h) of the restricted likelihood with
-/// white noise, a smooth field, shape and motion. Of a board that is flat and stands still, 1 % of
-/// the calibrations find either.
+/// white noise, a smooth field, shape and motion; of few views a test at 0.5 % that the board is
+/// not bent (calib/noise/board_tests.h), since they do not tell the variance of a shape. Of a board
+/// that is flat and stands still, 1 % of the calibrations find either.
 struct EffectsTest {
   std::optional<ComponentTest> shape;     ///< nothing where it was not tested
   std::optional<ComponentTest> motion;    ///< the same; one camera sees none
   std::optional<ComponentTest> isotropy;  ///< of the motion; the same
+  std::optional<BoardTest> bend;          ///< of the board; of few views
   bool along_baseline = false;            ///< isotropy is rejected
-  std::string not_tested;                 ///< why neither was; empty if they were
+  std::string not_tested;                 ///< why shape and motion were not; empty if they were
 
-  bool has_shape() const;
+  bool has_bend() const;
+  bool has_shape() const;  ///< or a bend, which is a part of it
   bool has_motion() const;
 };
 
-/// The test of a calibration without effects. Not of fewer than 8 views, of boards of more than 150
-/// points (it takes long), of doubtful calibrations (but for a bent board), nor where the options
-/// leave effects no place.
+/// The test of a calibration without effects. Of 4 to 7 views the bend alone is tested. Not of
+/// fewer views, of boards of more than 150 points (it takes long), of doubtful calibrations (but
+/// for a bent board), nor where the options leave effects no place.
 EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& options);
 
 /// `usual`, a calibration of the observations without effects, with those that the test finds,

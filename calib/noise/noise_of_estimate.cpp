@@ -10,6 +10,7 @@
 #include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
@@ -42,9 +43,29 @@ BoardObservations thinned(BoardObservations observations) {
   });
 }
 
+/// Appends a column to those of the rig for each unknown of the board.
+void add_board_unknowns(const std::vector<BoardField>& board, FrameRows& rows) {
+  const Eigen::Index rig = rows.by_rig.cols();
+  rows.by_rig.conservativeResize(Eigen::NoChange, rig + static_cast<Eigen::Index>(board.size()));
+  for (const ViewRows& view : rows.views) {
+    const auto n = static_cast<Eigen::Index>(view.ids.size());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int id = view.ids[static_cast<std::size_t>(i)];
+      for (const Eigen::Index row : {view.first + i, view.first + n + i}) {
+        Eigen::Index column = rig;
+        for (const BoardField& field : board) {
+          rows.by_rig(row, column++) = rows.by_point.row(row).dot(field.col(id));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
-RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts) {
+RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
+                                      NoiseParts parts,
+                                      const std::vector<BoardField>& board) {
   if (!estimate.evidence) {
     throw Error("corner noise", "the rig holds no evidence", "calibrate without --no-evidence");
   }
@@ -54,6 +75,7 @@ RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts pa
   const BoardObservations observations = thinned(evidence.observations);
   std::vector<FrameRows> frames =
       frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
+  for (FrameRows& rows : frames) add_board_unknowns(board, rows);
   const Eigen::Index unknowns = frames.empty() ? 0 : frames[0].by_rig.cols();
   return {std::move(frames), evidence.observations.target_m, parts,
           knowledge_of_priors(priors_of(estimate), estimate.rig, free, unknowns)};

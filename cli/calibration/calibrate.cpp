@@ -10,6 +10,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibration/effects.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
@@ -73,7 +74,8 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
 }
 
 /// " (p = 0.001)", or nothing for effects that were asked for.
-std::string found_text(const std::optional<ComponentTest>& test) {
+template <class Test>
+std::string found_text(const std::optional<Test>& test) {
   return test ? fmt::format(" ({})", p_text(*test)) : "";
 }
 
@@ -92,15 +94,15 @@ std::string effects_text(const CalibrationEffects& effects, const EffectsTest& t
     text += fmt::format(
         "  the board is uneven: {:.3f} mm in height, {:.3f} mm in its plane, rms{}\n",
         1e3 * effects.shape_height_m, 1e3 * effects.shape_plane_m, found_text(test.shape));
+    if (test.has_bend()) text += fmt::format("  the board is bent{}\n", found_text(test.bend));
   }
   return text;
 }
 
 std::string no_effects_text(const EffectsTest& test) {
-  if (!test.not_tested.empty()) {
-    return "random effects of the board: not looked for: " + test.not_tested + "\n";
-  }
-  std::string text = "random effects of the board: none in use";
+  std::string text = "random effects of the board: ";
+  text += test.not_tested.empty() ? "none in use" : "not looked for: " + test.not_tested;
+  if (test.bend) text += "; no bend found, " + p_text(*test.bend);
   if (test.shape) text += ", shape " + p_text(*test.shape);
   if (test.motion) text += ", motion " + p_text(*test.motion);
   return text + "\n";
@@ -110,7 +112,8 @@ std::string no_effects_text(const EffectsTest& test) {
 Json effects_test_json(const EffectsTest& test) {
   Json json{{"shape", test_json(test.shape)},
             {"motion", test_json(test.motion)},
-            {"isotropy", test_json(test.isotropy)}};
+            {"isotropy", test_json(test.isotropy)},
+            {"bend", test_json(test.bend)}};
   if (!test.not_tested.empty()) json["not_tested"] = test.not_tested;
   return json;
 }

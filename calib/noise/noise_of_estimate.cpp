@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/board/board_aspect.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/error.h"
@@ -43,24 +44,6 @@ BoardObservations thinned(BoardObservations observations) {
   });
 }
 
-/// Appends a column to those of the rig for each unknown of the board.
-void add_board_unknowns(const std::vector<BoardField>& board, FrameRows& rows) {
-  const Eigen::Index rig = rows.by_rig.cols();
-  rows.by_rig.conservativeResize(Eigen::NoChange, rig + static_cast<Eigen::Index>(board.size()));
-  for (const ViewRows& view : rows.views) {
-    const auto n = static_cast<Eigen::Index>(view.ids.size());
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int id = view.ids[static_cast<std::size_t>(i)];
-      for (const Eigen::Index row : {view.first + i, view.first + n + i}) {
-        Eigen::Index column = rig;
-        for (const BoardField& field : board) {
-          rows.by_rig(row, column++) = rows.by_point.row(row).dot(field.col(id));
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 
 RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
@@ -75,7 +58,11 @@ RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
   const BoardObservations observations = thinned(evidence.observations);
   std::vector<FrameRows> frames =
       frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
-  for (FrameRows& rows : frames) add_board_unknowns(board, rows);
+  std::vector<BoardField> unknown = board;
+  if (estimate.calibration && estimate.calibration->board_aspect) {
+    unknown.insert(unknown.begin(), aspect_field(observations.target_m));
+  }
+  for (FrameRows& rows : frames) add_board_unknowns(unknown, rows);
   const Eigen::Index unknowns = frames.empty() ? 0 : frames[0].by_rig.cols();
   return {std::move(frames), evidence.observations.target_m, parts,
           knowledge_of_priors(priors_of(estimate), estimate.rig, free, unknowns)};

@@ -68,7 +68,8 @@ TEST(BoardTests, FindABendInFourViewsWithItsSize) {
   }
 }
 
-// Of 20 flat boards of 4 to 7 views, with a false alarm in 1.5 % of them, three or more: one in 300.
+// Of 20 flat boards of 4 to 7 views, with a false alarm in 1.5 % of them, three or more: one in
+// 300.
 TEST(BoardTests, LeaveFlatBoardsFlat) {
   int found = 0;
   double sum = 0;

@@ -192,6 +192,7 @@ RigEstimate with_found_effects(RigEstimate usual,
                                EffectsTest& test) {
   const auto keep_usual = [&](const std::string& why) {
     options.board_shape = options.motion = false;
+    options.board_aspect = usual.calibration->board_aspect.has_value();
     usual.calibration->warnings.push_back("calibrated without the board's shape and motion: " +
                                           why);
     return usual;

@@ -30,6 +30,8 @@ struct CalibrationOptions {
   /// board too.
   bool board_shape = false, motion = false;
   bool baseline_motion = false;  ///< the motion along the baseline has a size of its own
+  /// The ratio of the board's spacings along x and y is an unknown (docs/calibration.md).
+  bool board_aspect = false;
   /// The corner noise is known to be white (simulated corners): use the bound as covariance.
   bool white_noise = false;
 };

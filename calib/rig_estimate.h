@@ -47,8 +47,15 @@ struct CalibrationEffects {
   std::vector<Eigen::Vector3d> shape_m;  ///< found, one per point of the target; empty without
 };
 
+/// The aspect of a board: the logarithm of its spacing along x over that along y, each relative to
+/// the target's as it was given.
+struct AspectEstimate {
+  double value = 0;
+  double sigma = 0;  ///< its standard deviation
+};
+
 /// Summary of a calibration. Residuals and their sums are those of the usual minimum, without
-/// random effects.
+/// random effects and with an aspect known.
 struct CalibrationSummary {
   std::string source = "board";  ///< board, pairs or combined
   double pixel_sigma_px = 0;     ///< standard deviation of a pixel coordinate
@@ -59,8 +66,9 @@ struct CalibrationSummary {
   double prior_chi2 = 0;         ///< the priors' part of the cost; 0 without a prior
   int prior_dof = 0;             ///< number of parameters with a prior
   std::optional<CalibrationEffects> effects;
-  std::vector<std::string> held;        ///< parameters that were not estimated
-  std::vector<CornerOutlier> outliers;  ///< excluded corners
+  std::optional<AspectEstimate> board_aspect;  ///< if estimated; the evidence's target has it
+  std::vector<std::string> held;               ///< parameters that were not estimated
+  std::vector<CornerOutlier> outliers;         ///< excluded corners
   std::vector<PairOutlier> pair_outliers;
   std::vector<std::string> warnings;
   std::vector<std::string> trust_warnings;  ///< why the result may be wrong, with a remedy

@@ -145,6 +145,10 @@ void require_same(const RigEstimate& a, const RigEstimate& b) {
                                 same(s.effects->shape_height_m, t.effects->shape_height_m) &&
                                 s.effects->shape_m.size() == t.effects->shape_m.size())),
             "random effects are kept");
+    require(s.board_aspect.has_value() == t.board_aspect.has_value() &&
+                (!s.board_aspect || (same(s.board_aspect->value, t.board_aspect->value) &&
+                                     same(s.board_aspect->sigma, t.board_aspect->sigma))),
+            "the board's aspect is kept");
     require(
         s.outliers.size() == t.outliers.size() && s.pair_outliers.size() == t.pair_outliers.size(),
         "outliers are kept");

@@ -62,6 +62,7 @@ struct Solution {
   LinearisedCost cost;             // at the state
   Eigen::MatrixXd bound;           // of the free parameters
   double data_parameters = 0;      // number determined by the corners, tr(C S_data)
+  double aspect = 0;               // of the board, which the observations' target has
 };
 
 /// The normal equations and the bound at the solution's state.
@@ -207,6 +208,10 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
                             fmt::join(before, "; ")),
                 error.remedy());
   }
+  if (options.board_aspect) {
+    s.aspect = take_aspect(s.observations, s.problem, s.state);
+    linearise(s);
+  }
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution
     const double sigma = estimated_sigma(s);
@@ -351,10 +356,11 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   Solution s = solve(std::move(observations), options);
   CalibrationSummary summary = summary_of(s, options);
   if (options.check_input) doubt_structure(s, options, summary);
-  if (has_effects(options)) {
+  if (has_effects(options) || options.board_aspect) {
     move_to_effects(options, s.observations, s.problem, s.state, s.cost, summary);
     s.bound = minimum_variance_bound(s.cost.equations, s.cost.names);
     summary.prior_chi2 = chi2_of_priors(s);
+    if (summary.board_aspect) summary.board_aspect->value += s.aspect;
   }
   RigEstimate estimate;
   estimate.rig = s.state.rig;
@@ -369,6 +375,9 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
                                                       has_effects(options) ? BoundOf::random_effects
                                                                            : BoundOf::white_noise);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
+  if (summary.board_aspect) {
+    add_scale_of_aspect(estimate.rig, summary.board_aspect->value, estimate.covariance->matrix);
+  }
   estimate.calibration = std::move(summary);
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;

@@ -53,6 +53,8 @@ CalibrationOptions options_to_solve_again(const RigEstimate& estimate) {
     options.motion = summary.effects->motion_m > 0;
     options.baseline_motion = summary.effects->motion_baseline_m > 0;
   }
+  options.board_aspect = summary.board_aspect.has_value();
+  if (options.board_aspect) options.pixel_sigma_px = 0;
   options.reject_outliers = false;
   options.check_input = false;
   options.white_noise = estimate.covariance && estimate.covariance->kind == CovarianceKind::mvb;
@@ -69,16 +71,18 @@ RigEstimate with_default_names(RigEstimate estimate) {
 }
 
 RigEstimate without_effects(const RigEstimate& estimate) {
-  if (!estimate.calibration || !estimate.calibration->effects) return estimate;
+  if (!estimate.calibration) return estimate;
+  if (!estimate.calibration->effects && !estimate.calibration->board_aspect) return estimate;
   if (!estimate.evidence || estimate.evidence->observations.views.empty()) return estimate;
   CalibrationOptions options = options_to_solve_again(with_default_names(estimate));
-  options.board_shape = options.motion = false;
+  options.board_shape = options.motion = options.board_aspect = false;
   RigEstimate usual = calibrate(estimate.evidence->observations, options);
   std::vector<std::string> names;
   for (const Camera& camera : estimate.rig.cameras) names.push_back(camera.name);
   rename_cameras(usual, names);
   usual.calibration = estimate.calibration;  // with the outliers and warnings of the corners
   usual.calibration->effects.reset();
+  usual.calibration->board_aspect.reset();
   return usual;
 }
 

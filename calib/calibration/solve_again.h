@@ -16,7 +16,8 @@ CalibrationOptions options_to_solve_again(const RigEstimate& estimate);
 /// passed to calibrate(), whose parameter names contain them.
 RigEstimate with_default_names(RigEstimate estimate);
 
-/// The calibration of the same corners without random effects, for what knows none; `estimate`
+/// The calibration of the same corners without random effects, for what knows none, and with the
+/// board's aspect known; `estimate`
 /// itself if it has none, or no views of a board. Throws what calibrate() throws.
 RigEstimate without_effects(const RigEstimate& estimate);
 

@@ -152,6 +152,12 @@ Json effects_json(const CalibrationEffects& effects) {
   return json;
 }
 
+AspectEstimate parse_aspect(const Node& node) {
+  const AspectEstimate aspect{node.at("value").number(), not_negative(node.at("sigma"), 1)};
+  check_bounded(Eigen::VectorXd::Constant(1, aspect.value), 1, node.at("value"));
+  return aspect;
+}
+
 }  // namespace
 
 CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
@@ -164,6 +170,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   summary.views = count(node.at("views"));
   parse_prior_terms(node, summary);
   if (node.has("effects")) summary.effects = parse_effects(node.at("effects"));
+  if (node.has("board_aspect")) summary.board_aspect = parse_aspect(node.at("board_aspect"));
   summary.held = parse_held(node, rig);
   if (node.has("outliers")) {
     for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
@@ -247,6 +254,9 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
     json["prior_dof"] = s.prior_dof;
   }
   if (s.effects) json["effects"] = effects_json(*s.effects);
+  if (s.board_aspect) {
+    json["board_aspect"] = {{"value", s.board_aspect->value}, {"sigma", s.board_aspect->sigma}};
+  }
   if (!s.held.empty()) json["held"] = s.held;
   json["outliers"] = Json::array();
   for (const CornerOutlier& o : s.outliers) {

@@ -90,6 +90,23 @@ Eigen::Matrix3d motion_axes(const Rig& rig, int camera) {
   return axes;
 }
 
+void add_board_unknowns(const std::vector<Eigen::Matrix3Xd>& board, FrameRows& rows) {
+  const Eigen::Index rig = rows.by_rig.cols();
+  rows.by_rig.conservativeResize(Eigen::NoChange, rig + static_cast<Eigen::Index>(board.size()));
+  for (const ViewRows& view : rows.views) {
+    const auto n = static_cast<Eigen::Index>(view.ids.size());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int id = view.ids[static_cast<std::size_t>(i)];
+      for (const Eigen::Index row : {view.first + i, view.first + n + i}) {
+        Eigen::Index column = rig;
+        for (const Eigen::Matrix3Xd& field : board) {
+          rows.by_rig(row, column++) = rows.by_point.row(row).dot(field.col(id));
+        }
+      }
+    }
+  }
+}
+
 std::vector<FrameRows> frame_rows(const BoardObservations& observations,
                                   const BoardState& state,
                                   const Eigen::MatrixXd& free,

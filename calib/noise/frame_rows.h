@@ -31,6 +31,10 @@ struct FrameRows {
   Eigen::Matrix<double, Eigen::Dynamic, 3> by_point;  ///< D: by the corner in the board's frame (m)
 };
 
+/// Appends a column to those of the rig for each unknown of the board: the displacements of the
+/// points in the board's frame by it, 3 x points of the target.
+void add_board_unknowns(const std::vector<Eigen::Matrix3Xd>& board, FrameRows& rows);
+
 /// Columns: the direction from the first camera to this one, in the first one's frame, and two
 /// across it; the axes of the first camera if both are in one place.
 Eigen::Matrix3d motion_axes(const Rig& rig, int camera);

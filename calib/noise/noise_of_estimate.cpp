@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "calib/board/board_aspect.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
@@ -44,7 +46,9 @@ BoardObservations thinned(BoardObservations observations) {
 
 }  // namespace
 
-RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts) {
+RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
+                                      NoiseParts parts,
+                                      const std::vector<BoardField>& board) {
   if (!estimate.evidence) {
     throw Error("corner noise", "the rig holds no evidence", "calibrate without --no-evidence");
   }
@@ -54,6 +58,11 @@ RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts pa
   const BoardObservations observations = thinned(evidence.observations);
   std::vector<FrameRows> frames =
       frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
+  std::vector<BoardField> unknown = board;
+  if (estimate.calibration && estimate.calibration->board_aspect) {
+    unknown.insert(unknown.begin(), aspect_field(observations.target_m));
+  }
+  for (FrameRows& rows : frames) add_board_unknowns(unknown, rows);
   const Eigen::Index unknowns = frames.empty() ? 0 : frames[0].by_rig.cols();
   return {std::move(frames), evidence.observations.target_m, parts,
           knowledge_of_priors(priors_of(estimate), estimate.rig, free, unknowns)};

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/restricted_likelihood.h"
@@ -13,9 +14,12 @@ namespace vernier::internal {
 
 /// The restricted likelihood of a calibration's corners, linearised at its rig and poses, with its
 /// held parameters and priors. A board whose warp is not zero is assumed to have been estimated
-/// with it. Of a target with more than 80 points, as many are used, evenly spaced by number. Throws
-/// Error if the estimate has no evidence.
-RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts);
+/// with it, and its aspect where the summary holds it. The unknowns `board` of the board
+/// (calib/noise/board_tests.h) come last among those of the rig. Of a target with more than 80
+/// points, as many are used, evenly spaced by number. Throws Error if the estimate has no evidence.
+RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
+                                      NoiseParts parts,
+                                      const std::vector<BoardField>& board = {});
 
 /// The components of a calibration's corner noise, and whether each is there: nothing where a part
 /// was not fitted, or not tested.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calib/base/decompositions.h"
+#include "calib/board/board_aspect.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/estimate/held_parameters.h"
@@ -50,23 +51,37 @@ class EffectsProblem {
   EffectsProblem(const BoardObservations& observations,
                  const std::vector<bool>& held,
                  const std::vector<RigPrior>& priors,
-                 NoiseParts parts)
-      : observations_(observations), held_(held), priors_(priors), parts_(parts) {}
+                 NoiseParts parts,
+                 BoardAspect aspect)
+      : observations_(observations),
+        held_(held),
+        priors_(priors),
+        parts_(parts),
+        stretches_(aspect == BoardAspect::free) {}
 
   MatrixXd free(const Rig& rig) const { return free_directions(rig, held_); }
-  /// The number of fixed effects beside the rig's: the warp of the board.
-  Index warps() const { return parts_.shape ? 2 : 0; }
+  bool stretches() const { return stretches_; }
+  /// The number of fixed effects beside the rig's: the warp of the board, then its aspect.
+  Index of_board() const { return (parts_.shape ? 2 : 0) + (stretches_ ? 1 : 0); }
 
-  /// Linearised at this state and shape.
-  RestrictedLikelihood at(const BoardState& state, const VectorXd& shape_m) const {
+  /// Linearised at the minimum's state, aspect and shape.
+  RestrictedLikelihood at(const EffectsMinimum& minimum) const {
+    const BoardState& state = minimum.state;
+    const VectorXd& shape_m = minimum.shape_m;
     BoardObservations shaped = observations_;
+    shaped.target_m = stretched_target(std::move(shaped.target_m), minimum.aspect);
+    const Eigen::Matrix3Xd by_aspect = aspect_field(shaped.target_m);
     for (std::size_t i = 0; 3 * i < static_cast<std::size_t>(shape_m.size()); ++i) {
       shaped.target_m[i] += shape_m.segment<3>(3 * static_cast<Index>(i));
     }
     const MatrixXd E = free(state.rig);
     const BoardWarp warp = parts_.shape ? BoardWarp::free : BoardWarp::known;
-    return {frame_rows(shaped, state, E, warp), observations_.target_m, parts_,
-            knowledge_of_priors(priors_, state.rig, E, E.cols() + warps()), shape_m};
+    std::vector<FrameRows> frames = frame_rows(shaped, state, E, warp);
+    for (FrameRows& rows : frames) {
+      if (stretches_) add_board_unknowns({by_aspect}, rows);
+    }
+    return {frames, observations_.target_m, parts_,
+            knowledge_of_priors(priors_, state.rig, E, E.cols() + of_board()), shape_m};
   }
 
  private:
@@ -74,11 +89,15 @@ class EffectsProblem {
   const std::vector<bool>& held_;
   const std::vector<RigPrior>& priors_;
   NoiseParts parts_;
+  bool stretches_;
 };
 
-/// Moves state and shape by the Gauss–Newton step, of the rig's free directions, the warp and the
-/// shape; its length in standard deviations.
-double move(const NoiseSolution& s, const MatrixXd& free, BoardState& state, VectorXd& shape_m) {
+/// Moves state, aspect and shape by the Gauss–Newton step, of the rig's free directions, the warp,
+/// the aspect and the shape; its length in standard deviations.
+double move(const NoiseSolution& s, const EffectsProblem& problem, EffectsMinimum& minimum) {
+  BoardState& state = minimum.state;
+  VectorXd& shape_m = minimum.shape_m;
+  const MatrixXd free = problem.free(state.rig);
   const Index n = free.cols();
   state.rig = retract(state.rig, free * s.step.head(n));
   for (std::size_t f = 0; f < state.T_first_board.size(); ++f) {
@@ -90,12 +109,13 @@ double move(const NoiseSolution& s, const MatrixXd& free, BoardState& state, Vec
     state.warp_m += s.step.segment<2>(n);
     shape_m += s.step.tail(shape_m.size());
   }
+  if (problem.stretches()) minimum.aspect += s.step[n + problem.of_board() - 1];
   return std::sqrt(std::max(0.0, s.step.dot(s.equations.information * s.step)));
 }
 
-/// Warp and shape eliminated: with z the rig and s both of these, the score of z is moved by X =
-/// S_zs S_ss⁻¹, M = [I, −X]ᵀ; each frame keeps its own term Mᵀ S_f M, and the shape's prior becomes
-/// X P Xᵀ.
+/// Warp, aspect and shape eliminated: with z the rig and s all of these, the score of z is moved by
+/// X = S_zs S_ss⁻¹, M = [I, −X]ᵀ; each frame keeps its own term Mᵀ S_f M, and the shape's prior
+/// becomes X P Xᵀ.
 void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimum& result) {
   const Index shape = all.information.rows() - rig;
   ReducedNormalEquations& z = result.equations;
@@ -129,10 +149,11 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
                                      const BoardState& start,
                                      const std::vector<bool>& held,
                                      const std::vector<RigPrior>& priors,
-                                     NoiseParts parts) {
+                                     NoiseParts parts,
+                                     BoardAspect aspect) {
   std::vector<bool> all_held = held;
   all_held.resize(static_cast<std::size_t>(parameter_count(start.rig)), false);
-  const EffectsProblem problem(observations, all_held, priors, parts);
+  const EffectsProblem problem(observations, all_held, priors, parts, aspect);
   const double spacing_m = point_spacing_m(observations.target_m);
   EffectsMinimum result;
   result.state = start;
@@ -141,23 +162,28 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
   }
   std::optional<CornerNoise> last;
   for (const Round& round : rounds) {
-    const RestrictedLikelihood likelihood = problem.at(result.state, result.shape_m);
+    const RestrictedLikelihood likelihood = problem.at(result);
     if (!last) last = usual_start(likelihood, spacing_m);
     result.noise = best_fit(likelihood, spacing_m, *last, round);
     if (&round == &rounds.back()) result.noise.noise = with_mean_motion(likelihood, result.noise);
     last = result.noise.noise;
     result.converged = false;
     for (int i = 0; i < most_steps && !result.converged; ++i) {
-      const NoiseSolution s =
-          problem.at(result.state, result.shape_m).at(*last, RestrictedLikelihood::Want::step);
-      const double length = move(s, problem.free(result.state.rig), result.state, result.shape_m);
+      const NoiseSolution s = problem.at(result).at(*last, RestrictedLikelihood::Want::step);
+      const double length = move(s, problem, result);
       result.converged = length < round.settled_sigmas;
     }
   }
-  result.noise.solution = problem.at(result.state, result.shape_m)
-                              .at(result.noise.noise, RestrictedLikelihood::Want::solution);
+  result.noise.solution =
+      problem.at(result).at(result.noise.noise, RestrictedLikelihood::Want::solution);
   result.free = problem.free(result.state.rig);
   result.converged = result.converged && result.noise.converged;
+  if (problem.stretches()) {
+    const Index at = result.free.cols() + problem.of_board() - 1;
+    const ScaledFactor S(result.noise.solution.equations.information, "the board's aspect");
+    const VectorXd unit = VectorXd::Unit(result.noise.solution.step.size(), at);
+    result.aspect_sigma = std::sqrt(S.solve(unit)[at]);
+  }
   eliminate_shape(result.noise.solution.equations, result.free.cols(), result);
   if (result.equations.prior_information.isZero(0)) result.equations.prior_information.resize(0, 0);
   return result;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "calib/board/board_aspect.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/noise/corner_noise.h"
@@ -19,6 +20,8 @@ struct EffectsMinimum {
   BoardState state;
   /// Of the board beyond its warp (state): x, y and z of every point; empty without.
   Eigen::VectorXd shape_m;
+  double aspect = 0;                 ///< of the board beside that of the observations' target
+  double aspect_sigma = 0;           ///< its standard deviation
   NoiseFit noise;                    ///< at it
   Eigen::MatrixXd free;              ///< free directions of the rig, parameters x free
   ReducedNormalEquations equations;  ///< of these, shape eliminated; its prior is in theirs
@@ -36,11 +39,13 @@ struct EffectsMinimum {
 /// `start` of the usual cost, by Gauss–Newton steps. The twists are eliminated as the poses are,
 /// which gives V_f its term M_f S M_fᵀ (Henderson's mixed model equations and generalised least
 /// squares are the same: Robinson 1991). The components are found again at the minimum. `held`: one
-/// flag per parameter of the rig; empty: none.
+/// flag per parameter of the rig; empty: none. A free aspect of the board
+/// (calib/board/board_aspect.h) is one more unknown, without a prior.
 EffectsMinimum minimise_with_effects(const BoardObservations& observations,
                                      const BoardState& start,
                                      const std::vector<bool>& held,
                                      const std::vector<RigPrior>& priors,
-                                     NoiseParts parts);
+                                     NoiseParts parts,
+                                     BoardAspect aspect = BoardAspect::known);
 
 }  // namespace vernier::internal

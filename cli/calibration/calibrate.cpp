@@ -4,12 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "calib/board_observations.h"
 #include "calib/calibration/effects.h"
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
@@ -73,7 +75,8 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
 }
 
 /// " (p = 0.001)", or nothing for effects that were asked for.
-std::string found_text(const std::optional<ComponentTest>& test) {
+template <class Test>
+std::string found_text(const std::optional<Test>& test) {
   return test ? fmt::format(" ({})", p_text(*test)) : "";
 }
 
@@ -92,25 +95,56 @@ std::string effects_text(const CalibrationEffects& effects, const EffectsTest& t
     text += fmt::format(
         "  the board is uneven: {:.3f} mm in height, {:.3f} mm in its plane, rms{}\n",
         1e3 * effects.shape_height_m, 1e3 * effects.shape_plane_m, found_text(test.shape));
+    if (test.has_bend()) text += fmt::format("  the board is bent{}\n", found_text(test.bend));
   }
   return text;
 }
 
 std::string no_effects_text(const EffectsTest& test) {
-  if (!test.not_tested.empty()) {
-    return "random effects of the board: not looked for: " + test.not_tested + "\n";
-  }
-  std::string text = "random effects of the board: none in use";
+  std::string text = "random effects of the board: ";
+  text += test.not_tested.empty() ? "none in use" : "not looked for: " + test.not_tested;
+  if (test.bend) text += "; no bend found, " + p_text(*test.bend);
   if (test.shape) text += ", shape " + p_text(*test.shape);
   if (test.motion) text += ", motion " + p_text(*test.motion);
   return text + "\n";
+}
+
+/// What the views tell of the board's aspect; nothing if it was not tested.
+std::string aspect_text(const EffectsTest& test) {
+  if (!test.aspect) return "";
+  const ComponentTest as_tested{0, test.aspect_p_value};
+  if (test.has_aspect()) {
+    return fmt::format(
+        "the board's x and y are not in the ratio given ({}): its aspect is estimated, and which "
+        "of "
+        "the two is as given is open, so that the rig's scale is uncertain by {:.3f} %\n",
+        p_text(as_tested), 50 * std::abs(test.aspect->value));
+  }
+  const std::string found = fmt::format("board aspect: as given, {} (to {:.3f} %)\n",
+                                        p_text(as_tested), 100 * test.aspect->sigma);
+  if (test.tells_aspect()) return found;
+  return fmt::format(
+      "board aspect: these views tell it from other fx and fy to {:.2f} % only: if the board may "
+      "be "
+      "stretched, turn it by 90 degrees in some views\n",
+      100 * test.aspect->sigma);
+}
+
+Json aspect_json(const EffectsTest& test) {
+  if (!test.aspect) return nullptr;
+  return {{"value", test.aspect->value},
+          {"sigma", test.aspect->sigma},
+          {"p_value", test.aspect_p_value},
+          {"told", test.tells_aspect()}};
 }
 
 /// Null for what was not tested.
 Json effects_test_json(const EffectsTest& test) {
   Json json{{"shape", test_json(test.shape)},
             {"motion", test_json(test.motion)},
-            {"isotropy", test_json(test.isotropy)}};
+            {"isotropy", test_json(test.isotropy)},
+            {"bend", test_json(test.bend)},
+            {"aspect", aspect_json(test)}};
   if (!test.not_tested.empty()) json["not_tested"] = test.not_tested;
   return json;
 }
@@ -120,10 +154,10 @@ void run(const CalibrateArguments& options, Session& session) {
     refuse_options(*options.board.app, board_options, "not used with --pairs, which need no board");
     refuse_options(*options.board.app, std::array{"--model", "--know"},
                    "with --pairs this comes from the prior");
-    refuse_options(
-        *options.board.app,
-        std::array{"--warp", "--no-model-check", "--board-shape", "--motion", "--no-effects"},
-        "only valid for views of a board");
+    refuse_options(*options.board.app,
+                   std::array{"--warp", "--no-model-check", "--board-shape", "--motion",
+                              "--board-aspect", "--no-effects"},
+                   "only valid for views of a board");
     refuse_options(*options.board.app, std::array{"--pixel-sigma"},
                    "the noise is taken from the pairs file and scaled by the residuals");
     calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
@@ -152,6 +186,7 @@ void run(const CalibrateArguments& options, Session& session) {
   } else if (options.solver.looks_for_effects()) {
     text += no_effects_text(test);
   }
+  text += aspect_text(test);
   if (options.solver.looks_for_effects()) json["effects_test"] = effects_test_json(test);
   if (!comparison.richer.empty()) {
     json["model_comparison"] = comparison_json(comparison);

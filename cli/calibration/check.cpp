@@ -169,6 +169,9 @@ Solved solve(const CheckArguments& options, Session& session) {
 
 /// Said where a check knows no random effects.
 void tell_of_effects(const CheckArguments& options, const Solved& solved, Session& session) {
+  if (solved.how.board_aspect) {
+    session.warn("the board's aspect is estimated; all but the halves take it as known");
+  }
   if (!solved.how.board_shape && !solved.how.motion) return;
   std::string checks = "mrcal and Monte Carlo";
   if (!options.injected.empty()) checks += ", the rigs that are wrong on purpose";
@@ -249,7 +252,7 @@ void run(const CheckArguments& options, Session& session) {
   }
   if (options.holdout) {
     const BoardStand stand = options.stand == "still" ? BoardStand::still : BoardStand::hand_held;
-    how.board_shape = how.motion = false;
+    how.board_shape = how.motion = how.board_aspect = false;
     add("noise", check_corner_noise(usual, stand, session));
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,

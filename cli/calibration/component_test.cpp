@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
 #include "cli/program/session.h"
 
@@ -15,6 +16,11 @@ namespace vernier::cli {
 Json test_json(const std::optional<ComponentTest>& test) {
   if (!test) return nullptr;
   return {{"likelihood_ratio", test->ratio}, {"p_value", test->p_value}};
+}
+
+Json test_json(const std::optional<BoardTest>& test) {
+  if (!test) return nullptr;
+  return {{"chi2", test->chi2}, {"p_value", test->p_value}};
 }
 
 std::string motion_words(double motion_m, double motion_baseline_m) {
@@ -26,5 +32,7 @@ std::string motion_words(double motion_m, double motion_baseline_m) {
 std::string p_text(const ComponentTest& test) {
   return test.p_value < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", test.p_value);
 }
+
+std::string p_text(const BoardTest& test) { return p_text(ComponentTest{test.chi2, test.p_value}); }
 
 }  // namespace vernier::cli

@@ -21,7 +21,7 @@ void look_along_baseline(const BoardObservations& observations,
                          CalibrationOptions& options,
                          FoundCalibration& found) {
   CalibrationOptions usual = options;
-  usual.board_shape = usual.motion = false;
+  usual.board_shape = usual.motion = usual.board_aspect = false;
   const EffectsTest test = test_effects(without_effects(found.estimate), usual);
   found.test.isotropy = test.isotropy;
   if (!test.along_baseline) return;
@@ -38,7 +38,7 @@ FoundCalibration calibrate_and_look(const BoardObservations& observations,
   found.estimate = calibrate(observations, options);
   if (look.models) {
     CalibrationOptions usual = options;
-    usual.board_shape = usual.motion = false;
+    usual.board_shape = usual.motion = usual.board_aspect = false;
     found.comparison = compare_models(without_effects(found.estimate), usual);
   }
   if (options.motion) look_along_baseline(observations, options, found);

@@ -83,10 +83,16 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
       verb->add_flag("--motion", input.motion,
                      "let the board move between the exposures of the cameras, as a hand-held one "
                      "does (default: where a test finds it)");
+  CLI::Option* aspect =
+      verb->add_flag("--board-aspect", input.board_aspect,
+                     "estimate the ratio of the board's spacings along x and y, as a printer "
+                     "stretches it; turn the board by 90 degrees in some views (default: where a "
+                     "test finds it)");
   verb->add_flag("--no-effects", input.no_effects,
-                 "leave the board's shape and motion out, and do not look for them")
+                 "leave the board's shape, motion and aspect out, and do not look for them")
       ->excludes(shape)
-      ->excludes(motion);
+      ->excludes(motion)
+      ->excludes(aspect);
 }
 
 GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {
@@ -116,6 +122,7 @@ CalibrationOptions calibration_options(const SolverInput& input, Session& sessio
   options.reject_outliers = !input.keep_outliers;
   options.board_shape = input.board_shape;
   options.motion = input.motion;
+  options.board_aspect = input.board_aspect;
   return options;
 }
 

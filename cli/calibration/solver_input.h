@@ -22,10 +22,10 @@ struct SolverInput {
   std::vector<std::string> known;  ///< NAME=VALUE,SIGMA
   std::string prior;               ///< a rig file
   bool warp = false, keep_outliers = false;
-  bool board_shape = false, motion = false, no_effects = false;
+  bool board_shape = false, motion = false, board_aspect = false, no_effects = false;
 
-  /// Whether the board's shape and motion are estimated where a test finds them.
-  bool looks_for_effects() const { return !board_shape && !motion && !no_effects; }
+  /// Whether the board's shape, motion and aspect are estimated where a test finds them.
+  bool looks_for_effects() const { return !board_shape && !motion && !board_aspect && !no_effects; }
 };
 
 /// Adds the solver options. `input` must outlive the parsing.
@@ -33,8 +33,8 @@ void add_solver_options(CLI::App* verb, SolverInput& input);
 
 /// The names of all these options.
 inline constexpr std::array solver_options{
-    "--model", "--pixel-sigma",   "--hold",        "--know",   "--prior",
-    "--warp",  "--keep-outliers", "--board-shape", "--motion", "--no-effects"};
+    "--model",         "--pixel-sigma", "--hold",   "--know",         "--prior",     "--warp",
+    "--keep-outliers", "--board-shape", "--motion", "--board-aspect", "--no-effects"};
 
 /// Converts to calibration options. Throws Error naming an option that cannot be parsed.
 CalibrationOptions calibration_options(const SolverInput& input, Session& session);

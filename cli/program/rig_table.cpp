@@ -108,6 +108,11 @@ std::string rig_table(const RigEstimate& estimate) {
     text += fmt::format("board warp: {:.3f} / {:.3f} mm along x / y\n", 1e3 * warp_m->x(),
                         1e3 * warp_m->y());
   }
+  if (estimate.calibration && estimate.calibration->board_aspect) {
+    const AspectEstimate& aspect = *estimate.calibration->board_aspect;
+    text += fmt::format("board aspect: {:+.3f} % ± {:.3f} %, x against y\n", 100 * aspect.value,
+                        100 * aspect.sigma);
+  }
   text += parameter_lines(estimate);
   if (estimate.covariance) {
     const ScaledDecomposition decomposition(gaussian_prior_of(estimate, "rig").covariance);
@@ -165,6 +170,10 @@ Json rig_json(const RigEstimate& estimate) {
   }
   if (const auto warp_m = estimated_warp_m(estimate)) {
     json["board_warp_m"] = {warp_m->x(), warp_m->y()};
+  }
+  if (estimate.calibration && estimate.calibration->board_aspect) {
+    const AspectEstimate& aspect = *estimate.calibration->board_aspect;
+    json["board_aspect"] = {{"value", aspect.value}, {"sigma", aspect.sigma}};
   }
   if (estimate.covariance_mvb) json["sigma_mvb"] = list(deviations(*estimate.covariance_mvb));
   if (estimate.covariance) {

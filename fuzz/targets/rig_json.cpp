@@ -55,6 +55,7 @@ RigEstimate calibrated_rig() {
   estimate.calibration->prior_dof = 16;
   estimate.calibration->outliers.push_back({0, 1, 2, "right00.png", {3, 4}, 5.5});
   estimate.calibration->pair_outliers.push_back({0, 1, {200, 60, 180, 60.5}, 3});
+  estimate.calibration->board_aspect = AspectEstimate{-0.002, 0.0004};
   estimate.calibration->warnings = {"a warning"};
   estimate.calibration->trust_warnings = {"a doubt"};
   CalibrationEvidence& evidence = estimate.evidence.emplace();

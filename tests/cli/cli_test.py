@@ -169,10 +169,10 @@ class RealPairs(Case):
         self.complains('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
                        IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
                        '-o', self.folder / 'no.json', '--no-effects', '--motion', of='--motion')
-        for option, of in ((('--warp',), '--warp: is not estimated beside --board-shape or '
-                            '--motion; leave it out; --board-shape contains it'),
-                           (('--pixel-sigma', '0.2'), '--pixel-sigma: is one of the components '
-                            'that --board-shape and --motion estimate; leave it out')):
+        for option, of in ((('--warp',), '--warp: is not estimated beside --board-shape, '
+                            '--motion or --board-aspect; leave it out; --board-shape contains it'),
+                           (('--pixel-sigma', '0.2'), '--pixel-sigma: is estimated with '
+                            '--board-shape, --motion and --board-aspect; leave it out')):
             self.complains('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
                            IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
                            '-o', self.folder / 'no.json', '--motion', *option, of=of)

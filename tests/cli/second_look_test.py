@@ -6,6 +6,7 @@
     second_look_test.py PROGRAM [unittest's options]
 """
 import json
+import math
 import re
 import shutil
 import sys
@@ -38,6 +39,50 @@ class Result(Corners):
         text = self.calibrate('--warp', '--no-model-check').stdout
         self.assertIn(f'board warp: {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
         self.assertNotIn('board warp', self.calibrate('--no-model-check').stdout)
+
+    def test_the_aspect_of_a_board(self):
+        found = json.loads(self.calibrate('--no-model-check', '--json').stdout)
+        aspect = found['effects_test']['aspect']
+        self.assertFalse(aspect['told'])  # the board is never turned
+        self.assertGreater(aspect['sigma'], 5e-4)
+        self.assertGreater(aspect['p_value'], 0.005)
+        self.assertNotIn('board_aspect', found)
+        self.assertIn('turn it by 90 degrees in some views',
+                      self.calibrate('--no-model-check').stdout)
+        self.assertNotIn('90 degrees', self.calibrate('--no-model-check', '--no-effects').stdout)
+        found = json.loads(self.calibrate('--no-model-check', '--board-aspect', '--json').stdout)
+        told = found['board_aspect']
+        self.assertLess(abs(told['value']), 4 * told['sigma'])
+        kept = json.loads((self.folder / 'rig.json').read_text())['calibration']['board_aspect']
+        self.assertEqual(kept, told)
+        done = vernier('check', self.folder / 'rig.json', '--trials', '60', '--json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('all but the halves take it as known', done.stderr)
+        self.assertTrue(all(gate['ok'] for gate in json.loads(done.stdout)['file'].values()
+                            if isinstance(gate, dict) and 'ok' in gate))
+        text = self.calibrate('--no-model-check', '--board-aspect').stdout
+        self.assertIn(f"board aspect: {100 * told['value']:+.3f} % ± {100 * told['sigma']:.3f} %",
+                      text)
+
+    def test_a_bend_in_few_views(self):
+        found = json.loads(self.calibrate('--no-model-check', '--json', frames=6).stdout)
+        self.assertGreater(found['effects_test']['bend']['p_value'], 0.005)
+        self.assertEqual(found['effects_test']['not_tested'], '6 views; it takes 8')
+        flat = (self.folder / 'o.csv').read_text().splitlines()
+        bent = flat[:1]
+        for line in flat[1:]:
+            f, c, row, col, X, Y, Z, u, v = (float(x) for x in line.split(','))
+            height = 4e-3 * (1 - ((col - 4) / 4) ** 2)
+            a, b = 0.5 * math.sin(2.1 * f), 0.5 * math.cos(1.7 * f)
+            z = 0.6 + 0.02 * f
+            u += 500 * height * math.sin(b) * math.cos(a) / z  # to first order, in the middle
+            v -= 500 * height * math.sin(a) / z
+            bent.append(f'{f:.0f},{c:.0f},{row:.0f},{col:.0f},{X},{Y},{Z},{u},{v}')
+        (self.folder / 'b.csv').write_text('\n'.join(bent))
+        done = vernier('calibrate', '--observations', self.folder / 'b.csv', '--size', '640x480',
+                       '--no-model-check', '-o', self.folder / 'rig.json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('the board is bent (p < 0.0001)', done.stdout)
 
     def test_cameras_may_differ_in_size(self):
         self.calibrate('--no-model-check', '--size', '640x480,660x500')

@@ -99,6 +99,9 @@ function summary_table(rig) {
     ["Board", warp ? `estimated warp: ${significant(1e3 * warp[0], 2)} mm along rows,`
       + ` ${significant(1e3 * warp[1], 2)} mm along columns`
       : "as specified; no warp estimated"],
+    ...(calibration.board_aspect ? [["Board aspect", `estimated:`
+      + ` ${significant(100 * calibration.board_aspect.value, 2)} % longer along x than along y,`
+      + ` ± ${significant(100 * calibration.board_aspect.sigma, 1)} %`]] : []),
     ["Covariance", reason ? reason + (inflation ? `. On average, its σ is`
       + ` ${significant(inflation, 2)} times that of the bound` : "") : "none"],
   ];

@@ -142,13 +142,38 @@ TEST(Effects, AreNotLookedForWhereTheyHaveNoPlace) {
   const auto reason = [](CalibrationOptions options, int frames) {
     options.check_input = options.reject_outliers = false;
     EffectsTest test;
-    found_in(corners(hand_held, frames), options, test);
+    found_in(corners({.white_px = 0.1}, frames), options, test);
     EXPECT_FALSE(options.board_shape || options.motion);
+    EXPECT_FALSE(test.shape || test.motion);
     return test.not_tested;
   };
   EXPECT_EQ(reason({.warp = BoardWarp::free}, 10), "the board's warp is estimated");
   EXPECT_EQ(reason({.pixel_sigma_px = 0.1}, 10), "the noise is given");
   EXPECT_EQ(reason({}, 7), "7 views; it takes 8");
+  EXPECT_EQ(reason({}, 3), "3 views; it takes 4");
+}
+
+// A board that is bent by 1 mm in four or five views, of which no one would be told otherwise.
+TEST(Effects, OfFewViewsAreABend) {
+  for (const int frames : {4, 5}) {
+    const SimulatedBoard flat =
+        simulate_board(test::stereo_rig(), {}, {.seed = 8108, .frames = frames});
+    const BoardObservations bent = test::bent(flat, {5e-4, 5e-4});
+    EXPECT_EQ(calibrate(bent).calibration->trust_warnings, std::vector<std::string>{});
+    CalibrationOptions options;
+    EffectsTest test;
+    const RigEstimate found = found_in(bent, options, test);
+    EXPECT_TRUE(options.board_shape && !options.motion);
+    EXPECT_TRUE(test.has_bend() && test.has_shape() && !test.shape);
+    const std::vector<Eigen::Vector3d>& shape_m = found.calibration->effects->shape_m;
+    // between the middle of a long side and a corner: 0.5 mm, to 99.9 %
+    EXPECT_NEAR(shape_m[4].z() - shape_m[0].z(), 5e-4, 3e-4);
+    CalibrationOptions of_flat;
+    const RigEstimate usual = found_in(flat.observations, of_flat, test);
+    EXPECT_FALSE(of_flat.board_shape || test.has_bend());
+    EXPECT_TRUE(test.bend);
+    EXPECT_FALSE(usual.calibration->effects);
+  }
 }
 
 // A rig file keeps all that it takes to solve the corners again, with effects and without.

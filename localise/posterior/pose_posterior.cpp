@@ -19,7 +19,8 @@ double least_error_rate(std::size_t nodes, const PosteriorOptions& options) {
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          std::size_t nodes,
-                                         const PosteriorOptions& options) {
+                                         const PosteriorOptions& options,
+                                         const EvidenceBetween& evidence_between) {
   constexpr std::size_t most_modes = 20;
   constexpr double same_m = 0.3, same_rad = 0.2, success_m = 1;
   std::vector<Hypothesis> sorted(hypotheses.begin(), hypotheses.end());
@@ -46,7 +47,10 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   const double thin = options.thin * std::exp(-seen / options.thin_observations);
   double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown);
   for (const WeightedMode& m : modes) {
-    weights.push_back(std::exp(share * (m.best.score - best)));
+    const bool elsewhere = distance_m(m.best.pose, modes[0].best.pose) > success_m;
+    const double behind = evidence_between && elsewhere ? evidence_between(modes[0].best, m.best)
+                                                        : best - m.best.score;
+    weights.push_back(std::exp(-share * behind));
     total += weights.back();
   }
   if (options.off_map > 0) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Hypothesis {
   double score = 0;                                       ///< log-likelihood, nats
   Eigen::Matrix3f information = Eigen::Matrix3f::Zero();  ///< of (x, y, turn) there, robot frame
 };
+
+/// Log-likelihood ratio, nats, of a hypothesis over another that is further than 1 m away.
+using EvidenceBetween = std::function<double(const Hypothesis&, const Hypothesis&)>;
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,
 /// and the true pose may not be among the hypotheses. With the misfit q, the nats per observation
@@ -66,10 +70,12 @@ struct WeightedMode {
 };
 
 /// Modes of a view of so many observations in a map of so many nodes, further than 0.3 m or 0.2 rad
-/// apart: the 20 of best score, most probable first.
+/// apart: the 20 of best score, most probable first. A mode weighs by its evidence against that of
+/// best score, which is the difference of their scores where nothing else is given.
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          std::size_t nodes,
-                                         const PosteriorOptions& options = {});
+                                         const PosteriorOptions& options = {},
+                                         const EvidenceBetween& evidence_between = {});
 
 }  // namespace vernier::localise::internal

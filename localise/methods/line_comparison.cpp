@@ -132,25 +132,28 @@ LineLocaliser::JudgedPose& LineLocaliser::judged(const Pose2D& pose, Query& quer
     const Pose2D at = turned(pose, look.turn_rad);
     const MapPart part = map_part(at, query);
     judged.of_looks.push_back(
-        place_evidence(look.view, *part.lines, part.pose_in_node, fine_agreement()));
+        place_evidence(look.view, *part.lines, part.pose_in_node, at, fine_agreement()));
   }
   return judged;
 }
 
-/// How many nats all looks say for one pose and against another.
-double LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const {
-  constexpr double hopeless_nats = 60;
-  const double behind = a.score - b.score;
-  if (behind > hopeless_nats) return behind;
+/// What all looks together tell one pose from another by.
+Evidence LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const {
+  constexpr double hopeless_nats = 100;
+  Evidence sum{a.score - b.score, 0, 0, 1};
+  if (sum.certain > hopeless_nats) return sum;
   JudgedPose &at_a = judged(a.pose, query), &at_b = judged(b.pose, query);
-  const auto known = at_b.behind_nats.find(a.pose);
-  if (known != at_b.behind_nats.end()) return known->second;
-  double sum = 0;
+  const auto known = at_b.from.find(a.pose);
+  if (known != at_b.from.end()) return known->second;
   for (std::size_t i = 0; i < query.looks.size(); ++i) {
-    sum +=
-        evidence_between(query.looks[i].view, at_a.of_looks[i], at_b.of_looks[i], fine_agreement());
+    const PlaceDifference difference = difference_between(query.looks[i].view, at_a.of_looks[i],
+                                                          at_b.of_looks[i], fine_agreement());
+    sum.certain -= difference.by_two_recordings;
+    sum.doubtful += difference.by_two_recordings;
+    sum.variance += difference.variance;
+    sum.repeated = std::min(sum.repeated, options_.repeats * difference.common);
   }
-  return at_b.behind_nats[a.pose] = sum;
+  return at_b.from[a.pose] = sum;
 }
 
 LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
@@ -160,7 +163,7 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   double observations = 0;
   for (const Seen& look : query.looks) observations += look.view.observations;
   const std::vector<WeightedMode> modes =
-      options_.stages.compare
+      options_.stages.compare && options_.repeats > 0
           ? pose_posterior(
                 query.compared, observations, map_.nodes.size(), posterior,
                 [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); })

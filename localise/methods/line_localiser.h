@@ -70,7 +70,7 @@ class LineLocaliser : public Localiser {
   bool is_plain(const Query& query) const;
   MapPart map_part(const Pose2D& pose, Query& query) const;
   JudgedPose& judged(const Pose2D& pose, Query& query) const;
-  double evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
+  Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 

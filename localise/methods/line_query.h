@@ -48,11 +48,10 @@ struct PoseOrder {
   }
 };
 
-/// What each look says of a pose of the first, line by line, and how much it says against that of
-/// the best score.
+/// What each look says of a pose of the first, line by line, and what tells others from it.
 struct LineLocaliser::JudgedPose {
   std::vector<PlaceEvidence> of_looks;
-  std::map<Pose2D, double, PoseOrder> behind_nats;  ///< by the pose it was compared with
+  std::map<Pose2D, Evidence, PoseOrder> from;
 };
 
 /// Memory and intermediate results of one query.

@@ -24,8 +24,10 @@ struct RecordingOptions {
 /// A line that the map holds at one place, and how well the best line that it holds at another one
 /// agrees with it.
 struct LineLikeness {
-  float likeness = 0;  ///< in [0, 1]: exp(-energy / 2), 0 without a partner
-  float weight = 0;    ///< observations
+  float likeness = 0;   ///< in [0, 1]: exp(-energy / 2), 0 without a partner
+  float weight = 0;     ///< observations; 0: it says nothing of the share in common
+  int partner = -1;     ///< among the other's lines of the same class
+  bool is_one = false;  ///< the partner is the line itself, seen from the other place
 };
 
 /// Probability that a line of one place is also a line of the other, given what the map holds
@@ -37,17 +39,9 @@ double probability_common(double likeness, double common, const RecordingOptions
 /// maximisation. 0.5 without lines.
 double common_share(std::span<const LineLikeness> lines, const RecordingOptions& options);
 
-/// Log-likelihood ratio, nats, of place a over place b by a line of a view, which is probable by
-/// what the map holds at a or at b, and which both have in common with the probability `common`
-/// (equation 2). Nothing if it is 1, whatever the map holds; the plain ratio if it is 0.
-double seen_evidence(double likelihood_a, double likelihood_b, double common);
-
-/// The same by a line of place a that a view lacks, of which `missing` is the probability if the
-/// place has it (equation 3). Never positive.
-double missed_evidence(double missing, double common);
-
 /// What a view says of a pose, line by line: the terms of agreement().
 struct PlaceEvidence {
+  Pose2D pose_in_map;
   PredictedLines predicted;
   struct SeenLine {
     float likelihood = 0;
@@ -56,18 +50,30 @@ struct PlaceEvidence {
   std::vector<SeenLine> seen;                ///< of the view's lines
   std::array<std::vector<float>, 2> missed;  ///< observations, of the steep and flat lines
 };
+/// Of `pose` in the frame of `lines`, which is `pose_in_map` in that of all places.
 PlaceEvidence place_evidence(const ComparedView& view,
                              const SpaceLines& lines,
                              const Pose2D& pose,
+                             const Pose2D& pose_in_map,
                              const AgreementOptions& options);
 
-/// Log-likelihood ratio, nats, that the view was taken at a and not at b, two poses in one map: the
-/// difference of their scores in agreement(), less what is explained by one recording of the same
-/// lines at both. Uses `covered_px` of the predicted lines as memory.
-double evidence_between(const ComparedView& view,
-                        PlaceEvidence& a,
-                        PlaceEvidence& b,
-                        const AgreementOptions& options,
-                        const RecordingOptions& recording = {});
+/// What tells two places of a map apart in a view: the difference of their scores in agreement(),
+/// in nats, by lines that both poses see, which are one recording, and by the others.
+struct PlaceDifference {
+  double by_one_recording = 0;
+  double by_two_recordings = 0;
+  /// Of the latter if the places are equal and their recordings differ alone: then each line is
+  /// more like one of them by chance, terms have random signs, and this is the sum of their
+  /// squares.
+  double variance = 0;
+  double common = 0;  ///< the share of lines that the places have in common, common_share()
+};
+
+/// Of a over b, two poses in one map. Uses `covered_px` of the predicted lines as memory.
+PlaceDifference difference_between(const ComparedView& view,
+                                   PlaceEvidence& a,
+                                   PlaceEvidence& b,
+                                   const AgreementOptions& options,
+                                   const RecordingOptions& recording = {});
 
 }  // namespace vernier::localise::internal

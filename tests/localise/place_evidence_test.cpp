@@ -26,105 +26,108 @@ namespace {
 
 using test::camera_view;
 
-/// A world of one line a place on a circle of bins: where it is at each place, whether both have
-/// it in common, and what the map and a view hold of it are all discrete, so that probabilities are
-/// sums over everything that may be.
+/// A world of one line a place on a circle of bins, where what is common to two places and what the
+/// map holds of them are discrete, so that probabilities are sums over everything that may be.
 struct OneLineWorld {
   static constexpr int bins = 120;
-  double common = 0.8, lost = 0.2, background = 0.03, sigma = 2;
+  double common = 0.8, lost = 0.2;
 
-  /// Of what is recorded where the line lies at x.
-  double recorded(int m, int x) const {
-    double sum = 0;
-    const auto bell = [&](int d) {
+  /// Of recording m of a line at x: a bell of 2 bins.
+  static double recorded(int m, int x) {
+    constexpr double sigma = 2;
+    const auto bell = [](int d) {
       const int apart = std::min((d % bins + bins) % bins, bins - (d % bins + bins) % bins);
       return std::exp(-0.5 * apart * apart / (sigma * sigma));
     };
+    double sum = 0;
     for (int d = 0; d < bins; ++d) sum += bell(d);
     return bell(m - x) / sum;
   }
 
-  /// Of a view's line q and what the map holds at a (for certain) and at b (unless it was lost),
-  /// if the view was taken at a or b: the sum over both lines' places.
-  double joint(int q, int a, int b, bool at_a) const {
-    double sum = 0;
-    const auto in_map = [&](int x) { return (1 - lost) * recorded(b, x) + lost / bins; };
-    const auto in_view = [&](int x) {
-      return (1 - background) * recorded(q, x) + background / bins;
-    };
+  /// That the line at a is also at b, where the map holds m and n: the sum over where they are.
+  double probability_common(int m, int n) const {
+    double one = 0, others = 0;
+    const auto kept = [&](int x) { return (1 - lost) * recorded(n, x) + lost / bins; };
     for (int xa = 0; xa < bins; ++xa) {
-      sum += common / bins * recorded(a, xa) * in_map(xa) * in_view(xa);
+      one += common / bins * recorded(m, xa) * kept(xa);
       for (int xb = 0; xb < bins; ++xb) {
-        sum += (1 - common) / bins / bins * recorded(a, xa) * in_map(xb) * in_view(at_a ? xa : xb);
+        others += (1 - common) / bins / bins * recorded(m, xa) * recorded(n, xb);
       }
     }
+    return one / (one + others);
+  }
+
+  /// The likeness of two recordings of one line, whose errors both count, and the density of any
+  /// line, of that of a perfect one.
+  static double overlap(int m, int n) {
+    double sum = 0;
+    for (int x = 0; x < bins; ++x) sum += recorded(m, x) * recorded(n, x);
     return sum;
   }
-
-  /// The likeness of two recordings of one line, whose errors both count.
-  double likeness(int m, int n) const {
-    double sum = 0, most = 0;
-    for (int x = 0; x < bins; ++x) {
-      sum += recorded(m, x) * recorded(n, x);
-      most += recorded(0, x) * recorded(0, x);
-    }
-    return sum / most;
-  }
-  /// The density of any line, of that of a perfect one.
-  double chance() const {
-    double most = 0;
-    for (int x = 0; x < bins; ++x) most += recorded(0, x) * recorded(0, x);
-    return 1.0 / bins / most;
-  }
+  static double likeness(int m, int n) { return overlap(m, n) / overlap(0, 0); }
+  static double chance() { return 1.0 / bins / overlap(0, 0); }
 };
 
-// Oracle: the sum over all places of the two lines, whether they are one, and what was lost.
-TEST(PlaceEvidence, IsTheMarginalLikelihoodOfOneLine) {
+// Oracle: the sum over all places of the two lines, and whether they are one.
+TEST(PlaceEvidence, ALineIsCommonAsBayesSays) {
   for (const double common : {0.1, 0.5, 0.9, 0.99}) {
-    for (const double lost : {0.1, 0.3}) {
-      OneLineWorld world;
-      world.common = common;
-      world.lost = lost;
+    for (const double lost : {0.05, 0.3}) {
+      const OneLineWorld world{common, lost};
       const RecordingOptions options{static_cast<float>(lost), static_cast<float>(world.chance())};
-      const auto stated = [&](int q, int a, int b) {
-        const double both = probability_common(world.likeness(a, b), common, options);
-        const double c = world.chance(), of_view = world.background * c;
-        const double kept = 1 - world.background;
-        // By its own recording alone, as if the places had nothing in common.
-        const double at_a = of_view + kept * world.likeness(q, a);
-        const double at_b = of_view + kept * ((1 - lost) * world.likeness(q, b) + lost * c);
-        return seen_evidence(at_a, at_b, both);
-      };
-      const auto exact = [&](int q, int a, int b) {
-        return std::log(world.joint(q, a, b, true) / world.joint(q, a, b, false));
-      };
-      // The map lost the line at b: it holds something else there, or nothing that is like it.
-      EXPECT_NEAR(stated(40, 40, 100), exact(40, 40, 100), 0.05) << common << ' ' << lost;
-      EXPECT_NEAR(stated(42, 40, 100), exact(42, 40, 100), 0.05) << common << ' ' << lost;
-      // Both hold it, shifted by the errors of recording.
-      for (const int shift : {0, 2, 4}) {
-        EXPECT_NEAR(stated(40, 40, 40 + shift), exact(40, 40, 40 + shift), 0.4)
-            << common << ' ' << lost << ' ' << shift;
+      for (const int apart : {0, 2, 4, 8, 50}) {
+        EXPECT_NEAR(probability_common(world.likeness(40, 40 + apart), common, options),
+                    world.probability_common(40, 40 + apart), 1e-6)
+            << common << ' ' << lost << ' ' << apart;
       }
     }
   }
 }
 
-TEST(PlaceEvidence, IsBoundedByWhatIsInCommon) {
-  EXPECT_DOUBLE_EQ(seen_evidence(1, 0.03, 0), std::log(1 / 0.03));
-  EXPECT_DOUBLE_EQ(seen_evidence(0.03, 1, 0), -std::log(1 / 0.03));
-  EXPECT_DOUBLE_EQ(seen_evidence(1, 0.03, 1), 0);
-  EXPECT_DOUBLE_EQ(missed_evidence(0.06, 0), std::log(0.06));
-  EXPECT_DOUBLE_EQ(missed_evidence(0.06, 1), 0);
-  double before_seen = 10, before_missed = -10;
-  for (const double common : {0.0, 0.2, 0.5, 0.9, 1.0}) {
-    const double seen = seen_evidence(1, 0.03, common), missed = missed_evidence(0.06, common);
-    EXPECT_LT(seen, before_seen);
-    EXPECT_GT(missed, before_missed);
-    EXPECT_DOUBLE_EQ(seen_evidence(0.03, 1, common), -seen);
-    before_seen = seen;
-    before_missed = missed;
+// Property: what is stated of two places is right as often as it says, where they are equal with a
+// known probability and differences are as the model has it. False-alarm rate 1e-3.
+TEST(PlaceEvidence, WeightsAreThePosterior) {
+  constexpr int draws = 20000;
+  constexpr double share = 0.5, most = 100, false_alarm_z = 3.29;
+  PosteriorOptions options;
+  options.dependence = 1;
+  options.differing_per_nat = 1 / (most + 1 / share);
+  RandomStream d({.seed = 8});
+  double excess = 0, wrong_excess = 0, variance = 0;
+  int sure = 0;
+  for (int i = 0; i < draws; ++i) {
+    const bool is_at_a = d.uniform() < 0.5;
+    Evidence evidence{0, 0, std::pow(d.uniform(2, 12), 2), 0.3};
+    if (d.uniform() < evidence.repeated) {
+      evidence.doubtful = std::sqrt(evidence.variance) * d.normal();
+    } else {
+      // Of the true place over the other: even above 0, falling off below.
+      const bool misleads = d.uniform() < 1 / (1 + share * most);
+      const double nats = misleads ? std::log(1 - d.uniform()) / share : d.uniform(0, most);
+      evidence.doubtful = is_at_a ? nats : -nats;
+    }
+    const double of_a = 1 / (1 + weight_against(evidence, share, options));
+    excess += is_at_a - of_a;
+    variance += of_a * (1 - of_a);
+    sure += std::max(of_a, 1 - of_a) > 0.99;
+    // One sided: a posterior that prefers either place too much is wrong more often than stated.
+    const double stated = std::min(of_a, 1 - of_a);
+    const bool wrong = (of_a > 0.5) != is_at_a;
+    wrong_excess += wrong - stated;
   }
+  EXPECT_LT(std::abs(excess), false_alarm_z * std::sqrt(variance));
+  EXPECT_LT(std::abs(wrong_excess), false_alarm_z * std::sqrt(variance));
+  EXPECT_GT(sure, draws / 3);
+}
+
+TEST(PlaceEvidence, WithoutRepetitionScoresCount) {
+  const double share = 0.55;
+  for (const double nats : {-20.0, -1.0, 0.0, 3.0, 40.0}) {
+    const double weight = std::exp(-share * (nats + 2));
+    EXPECT_NEAR(weight_against({2, nats, 50, 0}, share), weight, 1e-12 * weight);
+    const double of_certain = weight_against({nats, 0, 50, 0.9}, share);
+    EXPECT_NEAR(of_certain, std::exp(-share * nats), 1e-12 * of_certain);
+  }
+  EXPECT_EQ(weight_against({0, 0, 0, 0.9}, share), 1);
 }
 
 // Shares that are known: lines that are common have partners unless lost, others by chance.
@@ -164,77 +167,85 @@ std::vector<PlaceLine> recorded(const std::vector<PlaceLine>& room,
   return lines;
 }
 
-/// What a view, taken at the first of two places, says for it, as scores do and as evidence.
-struct Said {
-  double by_scores = 0, by_evidence = 0;
-};
-Said said(const std::vector<PlaceLine>& view,
-          const std::vector<PlaceLine>& a,
-          const std::vector<PlaceLine>& b) {
+constexpr double share = PosteriorOptions().evidence_share;
+
+/// What a view says of the first of two places against the second.
+PlaceDifference said(const std::vector<PlaceLine>& view,
+                     const std::vector<PlaceLine>& a,
+                     const std::vector<PlaceLine>& b) {
   const ComparedView seen = compared_view(test::view_of(view));
   const AgreementOptions options = fine_agreement();
   const SpaceLines lines_a = space_lines(a), lines_b = space_lines(b);
+  PlaceEvidence at_a = place_evidence(seen, lines_a, {}, {}, options);
+  PlaceEvidence at_b = place_evidence(seen, lines_b, {}, {50, 0, 0}, options);
+  const PlaceDifference difference = difference_between(seen, at_a, at_b, options);
   PredictedLines room;
-  PlaceEvidence at_a = place_evidence(seen, lines_a, {}, options);
-  PlaceEvidence at_b = place_evidence(seen, lines_b, {}, options);
-  return {agreement(seen, lines_a, {}, options, room).score -
-              agreement(seen, lines_b, {}, options, room).score,
-          evidence_between(seen, at_a, at_b, options)};
+  const double scores = agreement(seen, lines_a, {}, options, room).score -
+                        agreement(seen, lines_b, {}, options, room).score;
+  EXPECT_NEAR(difference.by_one_recording + difference.by_two_recordings, scores, 0.01);
+  EXPECT_EQ(difference.by_one_recording, 0);
+  return difference;
 }
 
-constexpr double share = PosteriorOptions().evidence_share;
+/// Probability of the first place, where places that look alike are equal with a probability.
+double probability(const PlaceDifference& d, double repeats) {
+  return 1 / (1 + weight_against(
+                      {d.by_one_recording, d.by_two_recordings, d.variance, repeats * d.common},
+                      share));
+}
 
-/// The error rate that is stated where the posterior prefers a place by so many nats.
-double stated_error(double nats) { return 1 / (1 + std::exp(share * std::abs(nats))); }
+struct Answers {
+  int all = 0, wrong = 0;
+  void add(double of_truth, double stated) {
+    all += std::max(of_truth, 1 - of_truth) >= 1 - stated;
+    wrong += 1 - of_truth >= 1 - stated;
+  }
+};
 
 // Two places of one content, each recorded once: the view is no more like one of them. Of answers
 // at a stated error of at most 10 % no more are wrong; false-alarm rate 1e-3. Scores alone fail.
 TEST(PlaceEvidence, EqualPlacesStayOpen) {
   constexpr int draws = 400;
-  constexpr double stated = 0.1, false_alarm = 1e-3;
-  int answers = 0, wrong = 0, answers_by_scores = 0, wrong_by_scores = 0;
+  constexpr double stated = 0.1, false_alarm = 1e-3, repeats = 0.5;
+  Answers by_scores, by_evidence;
   for (int i = 0; i < draws; ++i) {
     const auto room = camera_view(test::random_room(1000 + i, 150)).lines;
     const auto trial = static_cast<std::uint32_t>(i);
-    const Said s =
+    const PlaceDifference difference =
         said(recorded(room, 1, trial), recorded(room, 2, trial), recorded(room, 3, trial));
-    if (stated_error(s.by_evidence) <= stated) {
-      ++answers;
-      wrong += s.by_evidence < 0;
-    }
-    if (stated_error(s.by_scores) <= stated) {
-      ++answers_by_scores;
-      wrong_by_scores += s.by_scores < 0;
-    }
+    by_scores.add(probability(difference, 0), stated);
+    by_evidence.add(probability(difference, repeats), stated);
   }
-  RecordProperty("answers", answers);
-  RecordProperty("wrong", wrong);
-  RecordProperty("answers_by_scores", answers_by_scores);
-  RecordProperty("wrong_by_scores", wrong_by_scores);
-  EXPECT_GT(binomial_survival(wrong - 1, answers, stated), false_alarm)
-      << wrong << " of " << answers;
-  EXPECT_LT(binomial_survival(wrong_by_scores - 1, answers_by_scores, stated), false_alarm)
-      << wrong_by_scores << " of " << answers_by_scores;
+  EXPECT_GT(binomial_survival(by_evidence.wrong - 1, by_evidence.all, stated), false_alarm)
+      << by_evidence.wrong << " of " << by_evidence.all;
+  EXPECT_LT(binomial_survival(by_scores.wrong - 1, by_scores.all, stated), false_alarm)
+      << by_scores.wrong << " of " << by_scores.all;
 }
 
-// What only one place has tells them apart, and other places are told apart as before.
-TEST(PlaceEvidence, DifferencesTellPlacesApart) {
-  constexpr int draws = 100;
-  int told = 0;
-  for (int i = 0; i < draws; ++i) {
+// Other places are told apart although places may be equal.
+TEST(PlaceEvidence, OtherPlacesAreToldApart) {
+  for (int i = 0; i < 100; ++i) {
     const auto trial = static_cast<std::uint32_t>(i);
     const auto room = camera_view(test::random_room(2000 + i, 150)).lines;
-    auto changed = room;
     const auto other = camera_view(test::random_room(5000 + i, 150)).lines;
-    const std::size_t few = changed.size() / 4;
-    for (std::size_t k = 0; k < few; ++k) changed[k] = other[k];
-    const auto view = recorded(room, 1, trial);
-    told += share * said(view, recorded(room, 2, trial), recorded(changed, 3, trial)).by_evidence >
-            std::log(99);
-    const Said elsewhere = said(view, recorded(room, 2, trial), recorded(other, 3, trial));
-    EXPECT_GT(elsewhere.by_evidence, 0.6 * elsewhere.by_scores);
+    const PlaceDifference difference =
+        said(recorded(room, 1, trial), recorded(room, 2, trial), recorded(other, 3, trial));
+    EXPECT_LT(difference.common, 0.6);
+    EXPECT_GT(probability(difference, 0.5), 0.999);
   }
-  EXPECT_GT(told, 90);
+}
+
+// Two poses that see the same recorded lines: their differences count in full.
+TEST(PlaceEvidence, OneRecordingIsCertain) {
+  const auto room = camera_view(test::random_room(77, 150)).lines;
+  const ComparedView seen = compared_view(test::view_of(room));
+  const SpaceLines lines = space_lines(room);
+  const Pose2D beside{0.02, 0.05, 0.01}, at{7, -3, 1.2};
+  PlaceEvidence a = place_evidence(seen, lines, {}, at, fine_agreement());
+  PlaceEvidence b = place_evidence(seen, lines, beside, compose(at, beside), fine_agreement());
+  const PlaceDifference difference = difference_between(seen, a, b, fine_agreement());
+  EXPECT_GT(difference.by_one_recording, 1);
+  EXPECT_LT(difference.variance, 0.1 * difference.by_one_recording);
 }
 
 }  // namespace

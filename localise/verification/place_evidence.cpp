@@ -56,7 +56,7 @@ bool are_one(const ImageLines& lines,
              int other,
              const Pose2D& pose_of_others,
              const ViewCamera& camera) {
-  constexpr float aside_m = 0.15f, sigmas = 0.5f;
+  constexpr float aside_m = 0.15f, sigmas = 0.5f, beyond_m = 0.5f;  // of its ends as they are seen
   const QueryLine middle = as_query_line(lines, line);
   const Eigen::Vector3f m = in_map({middle.u, middle.v, middle.w}, camera, pose);
   const float length = others.length_px[other];
@@ -65,7 +65,9 @@ bool are_one(const ImageLines& lines,
   const Eigen::Vector3f a = in_map(begin, camera, pose_of_others);
   const Eigen::Vector3f b = in_map(begin + by, camera, pose_of_others);
   const Eigen::Vector3f along = (b - a).normalized();
-  const Eigen::Vector3f across = (m - a) - (m - a).dot(along) * along;
+  const float at = (m - a).dot(along);
+  if (!(at > -beyond_m && at < (b - a).norm() + beyond_m)) return false;
+  const Eigen::Vector3f across = (m - a) - at * along;
   const float sigma = std::sqrt(middle.variance_m2) + std::sqrt(others.variance_m2[other]);
   return across.norm() < aside_m + sigmas * sigma;
 }

@@ -245,7 +245,10 @@ TEST(PlaceEvidence, OneRecordingIsCertain) {
   PlaceEvidence b = place_evidence(seen, lines, beside, compose(at, beside), fine_agreement());
   const PlaceDifference difference = difference_between(seen, a, b, fine_agreement());
   EXPECT_GT(difference.by_one_recording, 1);
-  EXPECT_LT(difference.variance, 0.1 * difference.by_one_recording);
+  PlaceEvidence far = place_evidence(seen, lines, beside, {-40, 20, 0.3}, fine_agreement());
+  const PlaceDifference other = difference_between(seen, a, far, fine_agreement());
+  EXPECT_EQ(other.by_one_recording, 0);
+  EXPECT_GT(other.variance, difference.variance);
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
 """What `lines` states of its errors, and how often it is wrong, in buildings that repeat: a hall whose
-contents are the same after half a turn, and a corridor of equal doors.
+contents are the same after half a turn, a corridor of equal doors, and a hall of bays that are furnished alike.
 
-    repeating_buildings.py PROGRAM [--trials 300] [--seed 1]
+    repeating_buildings.py PROGRAM [--trials 300] [--seed 1] [--halls 1] [--corridors 20x40] [--bays 1x5] [--repeats 0]
 
 Prints a line for each building, kind of map and stated error: queries answered, and of these wrong.
 """
@@ -71,32 +71,83 @@ def corridor(doors=20, length_m=40, width_m=2.2):
     return mesh
 
 
+def bays(seed, count, bay_m=6, width_m=6):
+    """Bays of equal furniture in a row, along both walls."""
+    chance, mesh = random.Random(seed), Mesh()
+    mesh.box(0, 0, 0, count * bay_m, width_m, HEIGHT_M)
+    pieces = []
+    for wall in (False, True):
+        x = chance.uniform(0.1, 0.6)
+        while x < bay_m - 1.2:
+            width, depth = chance.uniform(0.4, 1.1), chance.uniform(0.3, 1.2)
+            pieces.append((x, width, depth, chance.uniform(0.7, 2.2), wall))
+            x += width + chance.uniform(0.3, 1.2)
+    for bay in range(count):
+        for x, width, depth, height, wall in pieces:
+            y = width_m - 0.02 - depth if wall else 0.02
+            mesh.box(bay * bay_m + x, y, 0, bay * bay_m + x + width, y + depth, height)
+    return mesh
+
+
+def seeds(text):
+    """1,4-6 as numbers."""
+    ranges = [part.split('-') for part in text.split(',') if part]
+    return [seed for part in ranges for seed in range(int(part[0]), int(part[-1]) + 1)]
+
+
+def buildings(options):
+    """Name and mesh of each."""
+    for seed in seeds(options.halls):
+        yield f'hall {seed}', turned_hall(seed)
+    for text in filter(None, options.corridors.split(',')):
+        doors, length_m = text.split('x')
+        yield f'corridor {text}', corridor(int(doors), float(length_m))
+    for text in filter(None, options.bays.split(',')):
+        seed, count = text.split('x')
+        yield f'bays {text}', bays(int(seed), int(count))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('program')
-    parser.add_argument('--trials', type=int, default=300)
-    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--trials', type=int, default=300, help='queries a building, map and rate')
+    parser.add_argument('--seed', type=int, default=1, help='of the studies')
+    parser.add_argument('--repeats', type=float, default=0, help='localiser.repeats')
+    parser.add_argument('--halls', default='1', help='seeds of halls, as 1,4-6')
+    parser.add_argument('--corridors', default='20x40', help='doors a side x length in metres')
+    parser.add_argument('--bays', default='1x5', help='seed x number of bays')
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
-    print(f'{"building":<10}{"headings":>10}{"stated %":>10}{"answered":>10}{"wrong":>8}{"wrong %":>9}')
+    print(f'{"building":<16}{"headings":>10}{"stated %":>10}{"answered":>10}{"wrong":>8}{"wrong %":>9}{"best %":>9}')
+    totals = {}
+    prior = f'[localiser]\nrepeats = {options.repeats}\n' if options.repeats else ''
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for building, mesh in (('hall', turned_hall(options.seed)), ('corridor', corridor())):
-            mesh.write(folder / f'{building}.obj')
-            subprocess.run([program, 'world', 'import', f'{building}.obj', '--up', 'z', '--unit', 'm', '-o',
-                            f'{building}.world.toml', '-q'], cwd=folder, check=True, capture_output=True)
+        for building, mesh in buildings(options):
+            file = building.replace(' ', '_')
+            mesh.write(folder / f'{file}.obj')
+            subprocess.run([program, 'world', 'import', f'{file}.obj', '--up', 'z', '--unit', 'm', '-o',
+                            f'{file}.world.toml', '-q'], cwd=folder, check=True, capture_output=True)
             (folder / 's.toml').write_text(
                 f'[study]\ntrials = {options.trials}\nseed = {options.seed}\nprotocol = "near_path"\n'
-                f'[world]\nfile = "{building}.world.toml"\n[sweep]\n"map.headings" = ["path", 8]\n'
+                f'[world]\nfile = "{file}.world.toml"\n{prior}[sweep]\n"map.headings" = ["path", 8]\n'
                 f'"localiser.max_error_rate" = {list(STATED)}\n')
-            run = subprocess.run([program, 'study', 's.toml', '-o', building, '-q', '--json'], cwd=folder,
+            run = subprocess.run([program, 'study', 's.toml', '-o', file, '-q', '--json'], cwd=folder,
                                  check=True, capture_output=True, text=True)
             for cell in json.loads(run.stdout)['cells']:
                 answered = round(cell['coverage'] * cell['trials'])
                 wrong = answered - round(cell['success'] * cell['trials'])
-                print(f'{building:<10}{str(cell["swept"]["map.headings"]).removesuffix(".0"):>10}'
-                      f'{100 * cell["swept"]["localiser.max_error_rate"]:>10g}{answered:>10}{wrong:>8}'
-                      f'{100 * wrong / max(1, answered):>9.1f}', flush=True)
+                headings = str(cell['swept']['map.headings']).removesuffix('.0')
+                stated = 100 * cell['swept']['localiser.max_error_rate']
+                print(f'{building:<16}{headings:>10}{stated:>10g}{answered:>10}{wrong:>8}'
+                      f'{100 * wrong / max(1, answered):>9.1f}{100 * cell["best_guess_success"]:>9.1f}', flush=True)
+                sums = totals.setdefault((building.split()[0], headings, stated), [0, 0])
+                sums[0] += answered
+                sums[1] += wrong
+    print()
+    for (kind, headings, stated), (answered, wrong) in totals.items():
+        print(f'{"all: " + kind:<16}{headings:>10}{stated:>10g}{answered:>10}{wrong:>8}'
+              f'{100 * wrong / max(1, answered):>9.1f}')
 
 
 if __name__ == '__main__':

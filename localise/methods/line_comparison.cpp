@@ -18,6 +18,7 @@
 #include "localise/posterior/pose_posterior.h"
 #include "localise/topological_map.h"
 #include "localise/verification/image_lines.h"
+#include "localise/verification/place_evidence.h"
 #include "localise/verification/view_agreement.h"
 
 namespace vernier::localise::internal {
@@ -92,23 +93,24 @@ void LineLocaliser::compare(Hypothesis& hypothesis, Query& query) const {
   }
 }
 
+/// What the map holds around a pose; no lines where it holds nothing.
+LineLocaliser::MapPart LineLocaliser::map_part(const Pose2D& pose, Query& query) const {
+  static const SpaceLines nothing_known = space_lines({});
+  const int node = grid_.nearest(pose);
+  if (node < 0) return {-1, &nothing_known, {}};
+  return {node, &lines_around(node, query), relative(pose, map_.nodes[node].pose)};
+}
+
 /// Scores and derivatives of all looks with respect to the pose of the first.
 LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first,
                                                              const AgreementOptions& options,
                                                              Query& query) const {
-  static const SpaceLines nothing_known = space_lines({});
   JointAgreement sum;
   for (const Seen& look : query.looks) {
-    const Pose2D pose = turned(first, look.turn_rad);
-    const int node = grid_.nearest(pose);
-    if (&look == query.looks.data()) sum.node = node;
-    const SpaceLines* lines = &nothing_known;
-    Pose2D in_node;
-    if (node >= 0) {
-      lines = &lines_around(node, query);
-      in_node = relative(pose, map_.nodes[node].pose);
-    }
-    const ViewAgreement here = agreement(look.view, *lines, in_node, options, query.room);
+    const MapPart part = map_part(turned(first, look.turn_rad), query);
+    if (&look == query.looks.data()) sum.node = part.node;
+    const ViewAgreement here =
+        agreement(look.view, *part.lines, part.pose_in_node, options, query.room);
     sum.score += here.score;
     // A step of the first look in the frame of this one.
     const auto c = static_cast<float>(std::cos(look.turn_rad));
@@ -121,6 +123,39 @@ LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first
   return sum;
 }
 
+/// A pose with what each look says of it, computed once.
+LineLocaliser::JudgedPose& LineLocaliser::judged(const Pose2D& pose, Query& query) const {
+  const auto known = query.judged.find(pose);
+  if (known != query.judged.end()) return known->second;
+  JudgedPose& judged = query.judged[pose];
+  for (const Seen& look : query.looks) {
+    const Pose2D at = turned(pose, look.turn_rad);
+    const MapPart part = map_part(at, query);
+    judged.of_looks.push_back(
+        place_evidence(look.view, *part.lines, part.pose_in_node, at, fine_agreement()));
+  }
+  return judged;
+}
+
+/// What all looks together tell one pose from another by.
+Evidence LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const {
+  constexpr double hopeless_nats = 100;
+  Evidence sum{a.score - b.score, 0, 0, 1};
+  if (sum.certain > hopeless_nats) return sum;
+  JudgedPose &at_a = judged(a.pose, query), &at_b = judged(b.pose, query);
+  const auto known = at_b.from.find(a.pose);
+  if (known != at_b.from.end()) return known->second;
+  for (std::size_t i = 0; i < query.looks.size(); ++i) {
+    const PlaceDifference difference = difference_between(query.looks[i].view, at_a.of_looks[i],
+                                                          at_b.of_looks[i], fine_agreement());
+    sum.certain -= difference.by_two_recordings;
+    sum.doubtful += difference.by_two_recordings;
+    sum.variance += difference.variance;
+    sum.repeated = std::min(sum.repeated, options_.repeats * difference.common);
+  }
+  return at_b.from[a.pose] = sum;
+}
+
 LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   LocalisationAnswer result;
   PosteriorOptions posterior;
@@ -128,7 +163,11 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   double observations = 0;
   for (const Seen& look : query.looks) observations += look.view.observations;
   const std::vector<WeightedMode> modes =
-      pose_posterior(query.compared, observations, map_.nodes.size(), posterior);
+      options_.stages.compare && options_.repeats > 0
+          ? pose_posterior(
+                query.compared, observations, map_.nodes.size(), posterior,
+                [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); })
+          : pose_posterior(query.compared, observations, map_.nodes.size(), posterior);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.

@@ -42,6 +42,13 @@ class LineLocaliser : public Localiser {
     Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
     int node = -1;  ///< with which the first look was compared
   };
+  /// What the map holds around a pose, and that in its frame.
+  struct MapPart {
+    int node;
+    const SpaceLines* lines;
+    Pose2D pose_in_node;
+  };
+  struct JudgedPose;
   /// Memory and intermediate results of one query.
   struct Query;
 
@@ -61,6 +68,9 @@ class LineLocaliser : public Localiser {
   void compare(Hypothesis& hypothesis, Query& query) const;
   void compare_best(int most, Query& query) const;
   bool is_plain(const Query& query) const;
+  MapPart map_part(const Pose2D& pose, Query& query) const;
+  JudgedPose& judged(const Pose2D& pose, Query& query) const;
+  Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 

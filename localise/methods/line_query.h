@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "localise/methods/line_localiser.h"
@@ -14,6 +15,7 @@
 #include "localise/posterior/pose_posterior.h"
 #include "localise/verification/floor_plan_votes.h"
 #include "localise/verification/image_lines.h"
+#include "localise/verification/place_evidence.h"
 
 namespace vernier::localise::internal {
 
@@ -39,6 +41,19 @@ class TriedPoses {
   std::vector<Pose2D> tried_;
 };
 
+/// An order of poses as keys.
+struct PoseOrder {
+  bool operator()(const Pose2D& a, const Pose2D& b) const {
+    return std::tie(a.x_m, a.y_m, a.heading_rad) < std::tie(b.x_m, b.y_m, b.heading_rad);
+  }
+};
+
+/// What each look says of a pose of the first, line by line, and what tells others from it.
+struct LineLocaliser::JudgedPose {
+  std::vector<PlaceEvidence> of_looks;
+  std::map<Pose2D, Evidence, PoseOrder> from;
+};
+
 /// Memory and intermediate results of one query.
 struct LineLocaliser::Query {
   std::vector<Seen> looks;
@@ -49,6 +64,7 @@ struct LineLocaliser::Query {
   TriedPoses doubted{0.5, 0.2};                         // whose rivals were compared
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
+  std::map<Pose2D, JudgedPose, PoseOrder> judged;
 };
 
 }  // namespace vernier::localise::internal

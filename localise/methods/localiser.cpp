@@ -47,6 +47,10 @@ void check(const LocaliserOptions& options) {
     throw Error("localiser options", "off_map is not from 0 to below 1",
                 "use 0 for a robot that stays on the map");
   }
+  if (!(options.repeats >= 0 && options.repeats < 1)) {
+    throw Error("localiser options", "repeats is not from 0 to below 1",
+                "use 0 for a building in which all places differ");
+  }
 }
 
 void check(const TopologicalMap& map) {

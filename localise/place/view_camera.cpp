@@ -49,6 +49,13 @@ Eigen::Vector3f project(const ViewCamera& camera, const Eigen::Vector3f& point_m
   return {-camera.f_px * point_m.y() * w, camera.f_px * down * w, w};
 }
 
+Eigen::Vector3f unproject(const ViewCamera& camera, const Eigen::Vector3f& uvw) {
+  const float depth = 1 / uvw[2], right = uvw[0] * depth / camera.f_px;
+  const float down = uvw[1] * depth / camera.f_px;
+  return {camera.cos_pitch * depth - camera.sin_pitch * down, -right,
+          camera.height_m - camera.sin_pitch * depth - camera.cos_pitch * down};
+}
+
 Eigen::Matrix3f step_jacobian(const ViewCamera& camera, const Eigen::Vector3f& uvw) {
   const float f = camera.f_px, u = uvw[0], v = uvw[1], w = uvw[2];
   const float depth = 1 / w, right = u * depth / f, down = v * depth / f;

@@ -25,6 +25,9 @@ ViewCamera view_camera(const PlaceView& view);
 /// u, v, w of a point of the robot frame; its depth must not be 0.
 Eigen::Vector3f project(const ViewCamera& camera, const Eigen::Vector3f& point_m);
 
+/// The inverse of project(): the point of the robot frame seen at (u, v, w), w not 0.
+Eigen::Vector3f unproject(const ViewCamera& camera, const Eigen::Vector3f& uvw);
+
 /// d (u, v, w) / d (x, y, turn) of a fixed point seen at (u, v, w), for a step of the robot in its
 /// own frame.
 Eigen::Matrix3f step_jacobian(const ViewCamera& camera, const Eigen::Vector3f& uvw);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <numeric>
 
 #include "localise/place.h"
 
@@ -16,12 +18,56 @@ double least_error_rate(std::size_t nodes, const PosteriorOptions& options) {
   return unknown / (1 + unknown);
 }
 
+namespace {
+
+constexpr double success_m = 1;
+
+/// Weights of modes, best score first, of which the first has 1: a place has that of its best mode
+/// by the evidence, the others of a place by their scores against that.
+std::vector<double> weights_of(std::span<const WeightedMode> modes,
+                               double share,
+                               const PosteriorOptions& options,
+                               const EvidenceBetween& evidence_between) {
+  std::vector<double> weights;
+  for (const WeightedMode& mode : modes) {
+    const auto leader = std::find_if(modes.begin(), modes.end(), [&](const WeightedMode& m) {
+      return distance_m(m.best.pose, mode.best.pose) <= success_m;
+    });
+    const auto known = static_cast<std::size_t>(leader - modes.begin());
+    const bool by_evidence = evidence_between && known > 0;
+    const Hypothesis& reference = by_evidence ? leader->best : modes[0].best;
+    double weight = std::exp(share * (mode.best.score - reference.score));
+    if (by_evidence) {
+      weight *= known < weights.size()
+                    ? weights[known]
+                    : weight_against(evidence_between(modes[0].best, mode.best), share, options);
+    }
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
+}  // namespace
+
+double weight_against(const Evidence& evidence, double share, const PosteriorOptions& options) {
+  const double certain = std::exp(-share * evidence.certain);
+  const double variance = options.dependence * evidence.variance;
+  if (!(variance > 0)) return certain;
+  const double d = evidence.doubtful;
+  const double equal = evidence.repeated * std::exp(-0.5 * d * d / variance) /
+                       std::sqrt(2 * std::numbers::pi * variance);
+  const double differ = (1 - evidence.repeated) * options.differing_per_nat;
+  return certain * (equal + differ * std::exp(-share * std::max(d, 0.0))) /
+         (equal + differ * std::exp(share * std::min(d, 0.0)));
+}
+
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          std::size_t nodes,
-                                         const PosteriorOptions& options) {
+                                         const PosteriorOptions& options,
+                                         const EvidenceBetween& evidence_between) {
   constexpr std::size_t most_modes = 20;
-  constexpr double same_m = 0.3, same_rad = 0.2, success_m = 1;
+  constexpr double same_m = 0.3, same_rad = 0.2;
   std::vector<Hypothesis> sorted(hypotheses.begin(), hypotheses.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
@@ -34,7 +80,6 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
     if (!known && modes.size() < most_modes) modes.push_back({h, 0});
   }
   if (modes.empty()) return modes;
-  std::vector<double> weights;
   const double best = modes[0].best.score;
   const double misfit = std::max(0.0, -best / std::max(1.0, observations));
   const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
@@ -45,10 +90,8 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                       std::exp(options.steepness * (misfit - options.lost_misfit) * root);
   const double thin = options.thin * std::exp(-seen / options.thin_observations);
   double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown);
-  for (const WeightedMode& m : modes) {
-    weights.push_back(std::exp(share * (m.best.score - best)));
-    total += weights.back();
-  }
+  const std::vector<double> weights = weights_of(modes, share, options, evidence_between);
+  total = std::accumulate(weights.begin(), weights.end(), total);
   if (options.off_map > 0) {
     const double gain =
         options.off_gain + options.off_steepness * (misfit - options.off_misfit) * root;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,15 @@ struct Hypothesis {
   double score = 0;                                       ///< log-likelihood, nats
   Eigen::Matrix3f information = Eigen::Matrix3f::Zero();  ///< of (x, y, turn) there, robot frame
 };
+
+/// What tells a hypothesis from another: nats by which its score is better.
+struct Evidence {
+  double certain = 0;   ///< whatever the places are
+  double doubtful = 0;  ///< by lines that were recorded at each place anew
+  double variance = 0;  ///< of the latter if the two places are equal: 0 on average
+  double repeated = 0;  ///< probability that they are, by the map alone
+};
+using EvidenceBetween = std::function<Evidence(const Hypothesis&, const Hypothesis&)>;
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,
 /// and the true pose may not be among the hypotheses. With the misfit q, the nats per observation
@@ -45,6 +55,9 @@ struct PosteriorOptions {
   double usual_observations = 60;                ///< of a view of a third as many lines as usual
   /// Those of a map along the route, and how many times as many still count.
   double usual_nodes = 180, most_times = 160;
+  /// Of places that may be equal: how many times as large as by independent lines the variance is,
+  /// and the density of a difference of scores, per nat, where places differ.
+  double dependence = 1.5, differing_per_nat = 0.01;
   /// Prior probability that the view was taken where the map holds nothing. Its odds grow by
   ///
   ///     exp(off_gain + off_steepness (q - off_misfit) √(observations / usual_observations)),
@@ -59,6 +72,10 @@ struct PosteriorOptions {
 /// does not know.
 double least_error_rate(std::size_t nodes, const PosteriorOptions& options = {});
 
+/// Weight of the other hypothesis where that with this evidence weighs 1, with the share by which
+/// evidence counts (docs/localisation.md, "Places that are alike").
+double weight_against(const Evidence& evidence, double share, const PosteriorOptions& options = {});
+
 /// A mode: the probability is that of a pose within 1 m, not of this pose alone.
 struct WeightedMode {
   Hypothesis best;
@@ -66,10 +83,12 @@ struct WeightedMode {
 };
 
 /// Modes of a view of so many observations in a map of so many nodes, further than 0.3 m or 0.2 rad
-/// apart: the 20 of best score, most probable first.
+/// apart: the 20 of best score, most probable first. Modes further than 1 m apart weigh by the
+/// evidence between the best of each place; without that, as all others, by their scores.
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          std::size_t nodes,
-                                         const PosteriorOptions& options = {});
+                                         const PosteriorOptions& options = {},
+                                         const EvidenceBetween& evidence_between = {});
 
 }  // namespace vernier::localise::internal

@@ -13,31 +13,54 @@
 
 namespace vernier::localise::internal {
 
-namespace {
+float observations(float length_px) {
+  constexpr float observation_px = 40, most_px = 120;
+  return std::min(length_px, most_px) / observation_px;
+}
 
-/// Lines are sampled by the error sources in pieces: so much of one counts as one observation.
-constexpr float observation_px = 40, most_px = 120;
+float likeness(const LineMatch& match) {
+  return match.line >= 0 ? std::exp(-0.5f * match.energy) : 0.0f;
+}
 
-float observations(float length_px) { return std::min(length_px, most_px) / observation_px; }
+float likelihood(const LineMatch& match, const AgreementOptions& options) {
+  return options.background + (1 - options.background) * likeness(match);
+}
 
-/// Length of predicted lines that count and are not seen, in observations.
-float missed(const ImageLines& lines) {
+bool may_be_missed(const ImageLines& lines, int line) {
   constexpr float shortest_px = 25;    // shorter ones are often lost
   constexpr float least_sine = 0.14f;  // 8 degrees: flatter lines have no disparity
-  constexpr float seen_share = 0.8f;   // the rest may be lost to gaps
+  return lines.length_px[line] >= shortest_px && std::abs(lines.dy[line]) >= least_sine;
+}
+
+float missed(const ImageLines& lines, int line) {
+  constexpr float seen_share = 0.8f;  // the rest may be lost to gaps
+  if (lines.counted[line] == 0 || !may_be_missed(lines, line)) return 0;
+  const float length = lines.length_px[line];
+  const float seen = std::min(1.0f, lines.covered_px[line] / (seen_share * length));
+  return observations(length) * (1 - seen);
+}
+
+namespace {
+
+float missed(const ImageLines& lines) {
   float sum = 0;
-  for (int i = 0; i < lines.size; ++i) {
-    const float length = lines.length_px[i];
-    if (lines.counted[i] == 0 || length < shortest_px || std::abs(lines.dy[i]) < least_sine) {
-      continue;
-    }
-    const float seen = std::min(1.0f, lines.covered_px[i] / (seen_share * length));
-    sum += observations(length) * (1 - seen);
-  }
+  for (int i = 0; i < lines.size; ++i) sum += missed(lines, i);
   return sum;
 }
 
 }  // namespace
+
+QueryLine as_query_line(const ImageLines& lines, int line) {
+  const float half = 0.5f * lines.length_px[line];
+  return {lines.u[line] + half * lines.dx[line],
+          lines.v[line] + half * lines.dy[line],
+          lines.w[line] + 0.5f * lines.dw[line],
+          lines.dx[line],
+          lines.dy[line],
+          lines.length_px[line],
+          lines.variance_m2[line],
+          is_steep(lines.dx[line])};
+}
 
 AgreementOptions wide_agreement() {
   AgreementOptions options;
@@ -77,13 +100,10 @@ ComparedView predicted_view(const SpaceLines& lines,
   ComparedView view{camera, {}, 0};
   for (const ImageLines* set : {&room.steep, &room.flat}) {
     for (int i = 0; i < set->size; ++i) {
-      const bool steep = is_steep(set->dx[i]);
-      if (steep != (set == &room.steep)) continue;  // those of both sets once
-      const float half = 0.5f * set->length_px[i];
-      view.lines.push_back({set->u[i] + half * set->dx[i], set->v[i] + half * set->dy[i],
-                            set->w[i] + 0.5f * set->dw[i], set->dx[i], set->dy[i],
-                            set->length_px[i], set->variance_m2[i], steep});
-      view.observations += observations(set->length_px[i]);
+      const QueryLine line = as_query_line(*set, i);
+      if (line.steep != (set == &room.steep)) continue;  // those of both sets once
+      view.lines.push_back(line);
+      view.observations += observations(line.length_px);
     }
   }
   return view;
@@ -100,12 +120,12 @@ ViewAgreement agreement(const ComparedView& view,
     ImageLines& partners = query.steep ? room.steep : room.flat;
     const LineMatch match = best_match(query, partners, view.camera, options.tolerance);
     const float weight = observations(query.length_px);
-    const float likeness = match.line >= 0 ? std::exp(-0.5f * match.energy) : 0.0f;
-    result.score += weight * std::log(options.background + (1 - options.background) * likeness);
+    result.score += weight * std::log(likelihood(match, options));
     if (match.line < 0) continue;
     // Gauss-Newton with the weight that the mixture gives the partner.
     const LineDeviation d = deviation(query, partners, match.line, view.camera, options.tolerance);
-    const float trust = weight * likeness / (likeness + options.background);
+    const float like = likeness(match);
+    const float trust = weight * like / (like + options.background);
     const Eigen::Matrix3f J = step_jacobian(view.camera, {query.u, query.v, query.w});
     const Eigen::RowVector3f by_offset =
         (J.row(0) * partners.dy[match.line] - J.row(1) * partners.dx[match.line]) /

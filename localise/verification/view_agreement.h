@@ -48,10 +48,28 @@ struct ViewAgreement {
   Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
 };
 
+/// Lines are sampled by the error sources in pieces: 40 px of one count as one observation, of its
+/// first 120 px.
+float observations(float length_px);
+
+/// How much a line is like its best partner, in [0, 1]: exp(-energy / 2), 0 without one.
+float likeness(const LineMatch& match);
+
+/// Density of a line of a view with this best partner, of a perfect one: its own or background.
+float likelihood(const LineMatch& match, const AgreementOptions& options);
+
+/// Whether a predicted line is long and steep enough to be in views.
+bool may_be_missed(const ImageLines& lines, int line);
+
+/// Length of a predicted line that counts and was not seen, by `covered_px`, in observations.
+float missed(const ImageLines& lines, int line);
+
+/// A predicted line as one of a view.
+QueryLine as_query_line(const ImageLines& lines, int line);
+
 /// Compares a view with lines in its image, both ways: every line of the view has its best
 /// partner or is background; every counted line that both eyes should see has been seen in part or
-/// whole, or is missing. 40 px of line count as one observation, the first 120 px of each.
-/// `room` is memory that calls share.
+/// whole, or is missing. `room` is memory that calls share.
 ViewAgreement agreement(const ComparedView& view,
                         const SpaceLines& lines,
                         const Pose2D& pose,

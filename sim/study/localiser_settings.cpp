@@ -22,7 +22,7 @@ using namespace vernier::internal;
 void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
   check_keys(table,
              {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "off_map", "stages", "command", "time_limit_s", "corners", "min_corners"},
+              "off_map", "repeats", "stages", "command", "time_limit_s", "corners", "min_corners"},
              "[localiser]");
   if (const auto* method = table.get("method")) {
     settings.method = text(*method, "localiser.method");
@@ -55,6 +55,9 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
   }
   if (const auto* rate = table.get("max_error_rate")) {
     settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
+  }
+  if (const auto* repeats = table.get("repeats")) {
+    settings.localiser.repeats = number_in(*repeats, "localiser.repeats", 0, 0.999);
   }
   if (const auto* off_map = table.get("off_map")) {
     settings.localiser.off_map = number_in(*off_map, "localiser.off_map", 0, 0.999);

@@ -163,6 +163,9 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   if (s.localiser.max_error_rate != usual.max_error_rate) {
     all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
   }
+  if (s.localiser.repeats != usual.repeats) {
+    all["localiser.repeats"] = fmt::format("{}", s.localiser.repeats);
+  }
   if (s.localiser.off_map != usual.off_map) {
     all["localiser.off_map"] = fmt::format("{}", s.localiser.off_map);
   }

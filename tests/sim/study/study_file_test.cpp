@@ -118,13 +118,15 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   };
   const auto lines = cell(
       "method = \"lines\"\nranker = \"pgh\"\ncandidates = 7\nmax_error_rate = 0.05\noff_map = "
-      "0.1\nlooks = 3\n");
+      "0.1\nrepeats = 0.2\nlooks = 3\n");
   EXPECT_EQ(lines.experiment.localiser.ranker, "pgh");
   EXPECT_EQ(lines.experiment.localiser.candidates, 7);
   EXPECT_EQ(lines.experiment.localiser.max_error_rate, 0.05);
   EXPECT_EQ(lines.experiment.looks, 3);
   EXPECT_EQ(lines.settings.at("localiser.max_error_rate"), "0.05");
   EXPECT_EQ(lines.experiment.localiser.off_map, 0.1);
+  EXPECT_EQ(lines.experiment.localiser.repeats, 0.2);
+  EXPECT_EQ(lines.settings.at("localiser.repeats"), "0.2");
   EXPECT_EQ(lines.settings.at("localiser.off_map"), "0.1");
   EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
   EXPECT_EQ(cell("method = \"pgh\"\ncandidates = 4\n").settings.at("localiser.candidates"), "4");
@@ -139,10 +141,10 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   // Keys of older stores hold none of these.
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.candidates"), 0u);
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);
-  for (const char* wrong :
-       {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n", "max_error_rate = 1.5\n",
-        "off_map = 1\n", "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
-        "stages = \"align+align\"\n", "stages = \"\"\n", "stages = 3\n"}) {
+  for (const char* wrong : {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n",
+                            "max_error_rate = 1.5\n", "off_map = 1\n", "repeats = 1\n",
+                            "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
+                            "stages = \"align+align\"\n", "stages = \"\"\n", "stages = 3\n"}) {
     EXPECT_THROW(cell(wrong), Error) << wrong;
   }
 }

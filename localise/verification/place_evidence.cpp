@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/verification/place_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
+#include "localise/verification/image_lines.h"
+#include "localise/verification/view_agreement.h"
+
+namespace vernier::localise::internal {
+
+double probability_common(double likeness, double common, const RecordingOptions& options) {
+  // Equation (1): the density of what the map holds at the other place, if that has the line (and
+  // the recording kept or lost it), and if it has not.
+  const double as_one = (1 - options.lost) * likeness + options.lost * options.chance;
+  const double as_others = options.chance;
+  return common * as_one / (common * as_one + (1 - common) * as_others);
+}
+
+double common_share(std::span<const LineLikeness> lines, const RecordingOptions& options) {
+  constexpr int rounds = 20;
+  double share = 0.5;
+  for (int round = 0; round < rounds; ++round) {
+    double common = 1, all = 2;
+    for (const LineLikeness& line : lines) {
+      common += line.weight * probability_common(line.likeness, share, options);
+      all += line.weight;
+    }
+    share = common / all;
+  }
+  return share;
+}
+
+namespace {
+
+std::array<ImageLines*, 2> sets(PredictedLines& lines) { return {&lines.steep, &lines.flat}; }
+
+/// A point of an image as a place sees it, in the map's frame, m.
+Eigen::Vector3f in_map(const Eigen::Vector3f& uvw, const ViewCamera& camera, const Pose2D& pose) {
+  const Eigen::Vector3f robot = unproject(camera, uvw);
+  const Pose2D floor = compose(pose, {robot.x(), robot.y(), 0});
+  return {static_cast<float>(floor.x_m), static_cast<float>(floor.y_m), robot.z()};
+}
+
+/// Whether a line of one place and its partner at another are where one line of the world is.
+bool are_one(const ImageLines& lines,
+             int line,
+             const Pose2D& pose,
+             const ImageLines& others,
+             int other,
+             const Pose2D& pose_of_others,
+             const ViewCamera& camera) {
+  constexpr float aside_m = 0.15f, sigmas = 0.5f, beyond_m = 0.5f;  // of its ends as they are seen
+  const QueryLine middle = as_query_line(lines, line);
+  const Eigen::Vector3f m = in_map({middle.u, middle.v, middle.w}, camera, pose);
+  const float length = others.length_px[other];
+  const Eigen::Vector3f begin(others.u[other], others.v[other], others.w[other]);
+  const Eigen::Vector3f by(length * others.dx[other], length * others.dy[other], others.dw[other]);
+  const Eigen::Vector3f a = in_map(begin, camera, pose_of_others);
+  const Eigen::Vector3f b = in_map(begin + by, camera, pose_of_others);
+  const Eigen::Vector3f along = (b - a).normalized();
+  const float at = (m - a).dot(along);
+  if (!(at > -beyond_m && at < (b - a).norm() + beyond_m)) return false;
+  const Eigen::Vector3f across = (m - a) - at * along;
+  const float sigma = std::sqrt(middle.variance_m2) + std::sqrt(others.variance_m2[other]);
+  return across.norm() < aside_m + sigmas * sigma;
+}
+
+/// Of the lines of one place, what the map holds at the other. Where that is the same line of the
+/// world, it is no second recording: nothing.
+using Commons = std::array<std::vector<LineLikeness>, 2>;
+
+Commons likenesses(PlaceEvidence& place,
+                   PlaceEvidence& other_place,
+                   const ViewCamera& camera,
+                   const AgreementOptions& options) {
+  PredictedLines &lines = place.predicted, &others = other_place.predicted;
+  Commons result;
+  for (std::size_t set = 0; set < 2; ++set) {
+    const ImageLines& own = *sets(lines)[set];
+    ImageLines& other = *sets(others)[set];
+    result[set].reserve(own.size);
+    for (int i = 0; i < own.size; ++i) {
+      const QueryLine line = as_query_line(own, i);
+      const LineMatch match = best_match(line, other, camera, options.tolerance);
+      LineLikeness& of_line = result[set].emplace_back();
+      of_line.is_one = match.line >= 0 && are_one(own, i, place.pose_in_map, other, match.line,
+                                                  other_place.pose_in_map, camera);
+      of_line.partner = match.line;
+      if (of_line.is_one) continue;
+      of_line.likeness = likeness(match);
+      const bool counts = line.steep == (set == 0) && may_be_missed(own, i);
+      if (counts) of_line.weight = observations(line.length_px);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+PlaceEvidence place_evidence(const ComparedView& view,
+                             const SpaceLines& lines,
+                             const Pose2D& pose,
+                             const Pose2D& pose_in_map,
+                             const AgreementOptions& options) {
+  PlaceEvidence evidence;
+  evidence.pose_in_map = pose_in_map;
+  predict(lines, pose, view.camera, evidence.predicted);
+  evidence.seen.reserve(view.lines.size());
+  for (const QueryLine& query : view.lines) {
+    ImageLines& partners = query.steep ? evidence.predicted.steep : evidence.predicted.flat;
+    const LineMatch match = best_match(query, partners, view.camera, options.tolerance);
+    evidence.seen.push_back({likelihood(match, options), match.line});
+  }
+  for (std::size_t set = 0; set < 2; ++set) {
+    const ImageLines& predicted = *sets(evidence.predicted)[set];
+    for (int i = 0; i < predicted.size; ++i) {
+      evidence.missed[set].push_back(missed(predicted, i));
+    }
+  }
+  return evidence;
+}
+
+PlaceDifference difference_between(const ComparedView& view,
+                                   PlaceEvidence& a,
+                                   PlaceEvidence& b,
+                                   const AgreementOptions& options,
+                                   const RecordingOptions& recording) {
+  const Commons of_a = likenesses(a, b, view.camera, options);
+  const Commons of_b = likenesses(b, a, view.camera, options);
+  PlaceDifference difference;
+  const auto add = [&](double nats, bool is_one) {
+    (is_one ? difference.by_one_recording : difference.by_two_recordings) += nats;
+    if (!is_one) difference.variance += nats * nats;
+  };
+  for (std::size_t i = 0; i < view.lines.size(); ++i) {
+    const auto &at_a = a.seen[i], &at_b = b.seen[i];
+    const bool is_of_a = at_a.likelihood >= at_b.likelihood;
+    const int partner = is_of_a ? at_a.partner : at_b.partner;
+    if (partner < 0) continue;  // background at both
+    add(observations(view.lines[i].length_px) * std::log(at_a.likelihood / at_b.likelihood),
+        (is_of_a ? of_a : of_b)[view.lines[i].steep ? 0 : 1][partner].is_one);
+  }
+  // A line that the view lacks is missing at both places if both have it.
+  const double per_observation = std::log(options.missing);
+  for (std::size_t set = 0; set < 2; ++set) {
+    std::vector<float> left = b.missed[set];
+    for (std::size_t i = 0; i < of_a[set].size(); ++i) {
+      float missed = a.missed[set][i];
+      if (const int partner = of_a[set][i].partner; partner >= 0) {
+        missed -= std::exchange(left[partner], 0.0f);
+      }
+      add(missed * per_observation, of_a[set][i].is_one);
+    }
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      add(-left[i] * per_observation, of_b[set][i].is_one);
+    }
+  }
+  std::vector<LineLikeness> lines;
+  for (const Commons* of : {&of_a, &of_b}) {
+    for (const auto& set : *of) lines.insert(lines.end(), set.begin(), set.end());
+  }
+  difference.common = common_share(lines, recording);
+  return difference;
+}
+
+}  // namespace vernier::localise::internal

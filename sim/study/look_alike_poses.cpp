@@ -24,8 +24,8 @@ using Visit = std::function<bool(const Pose2D&)>;
 constexpr double slack_m = 0.01;      ///< of distances
 constexpr double least_base_m = 0.3;  ///< between two uprights that give a pose
 constexpr std::size_t most_pairs = 6;
-constexpr int most_uprights = 48;  ///< the longest of a view, of which pairs are chosen
-constexpr double most_work = 1e7;  ///< tried edges of a view, after which no pair is added
+constexpr int most_uprights = 48;           ///< the longest of a view, of which pairs are chosen
+constexpr double most_work = 1e7;           ///< tried edges of a view, after which no pair is added
 constexpr int most_level_work = 1'000'000;  ///< tried level edges of one pair
 
 /// The pose that brings `seen_m` (robot frame) to `there_m`, after a turn.

@@ -34,8 +34,9 @@ struct BoardTest {
 ///
 /// A part of the board that few views see has little to tell its variance from, as a random effect
 /// has; a fixed effect needs none. `usual` is linearised at its rig and poses. Its p-values are a
-/// little too small where they are off by several standard deviations: of 4 to 7 views of a flat
-/// board at 1 %, 1.0 to 1.5 %. Throws Error if the corners do not determine the unknowns.
+/// little too small where they are off by several standard deviations, hence the level of 0.5 %
+/// that calibrate() takes: of 400 sets of 4 to 7 views of a flat board it accused one (white noise;
+/// docs/results.md). Throws Error if the corners do not determine the unknowns.
 BoardTest board_test(const RigEstimate& usual, const std::vector<BoardField>& unknowns);
 
 }  // namespace vernier::internal

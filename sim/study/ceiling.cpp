@@ -26,7 +26,7 @@ using namespace localise;
 namespace {
 
 constexpr double missing_share = 0.05;  ///< of the image length, that may differ
-constexpr double same_place_m = 0.15;    ///< hypotheses that close are one, if their headings are
+constexpr double same_place_m = 0.15;   ///< hypotheses that close are one, if their headings are
 constexpr double same_heading_rad = 0.1;
 constexpr std::size_t most_aliases = 1000;  ///< a ceiling below 0.1 % is none
 

@@ -18,6 +18,7 @@
 
 #include "bench/made_up_results.h"
 #include "calib/error.h"
+#include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_keys.h"
@@ -39,8 +40,9 @@ void store_ceilings(const StudyWork& work, const std::filesystem::path& folder) 
   std::filesystem::create_directories(folder);
   StudyStore store(store_file(folder, {}));
   for (const CeilingJob& ceiling : work.ceilings) {
-    const auto [key, value] =
-        ceiling_part(ceiling.key, std::vector<int>(static_cast<std::size_t>(ceiling.queries), 0));
+    const auto [key, value] = ceiling_part(
+        ceiling.key,
+        QueryCeilings(static_cast<std::size_t>(ceiling.queries), QueryCeiling{1, true}));
     store.set_note(key, value);
   }
 }

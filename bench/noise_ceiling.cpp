@@ -36,8 +36,7 @@ void run(const std::string& file, const std::string& protocol, int queries, std:
     const auto trial = static_cast<std::uint32_t>(query);
     const localise::Pose2D pose = places.draw(seed, trial);
     const NoisyLook look = noisy.look_from(pose, {.seed = seed, .trial = trial});
-    const QueryCeiling found = query_ceiling(
-        finder.aliases(pose, [&](const localise::Pose2D& p) { return places.density(p); }));
+    const QueryCeiling found = query_ceiling(finder.aliases(pose, &places));
     right += look.right();
     unaliased += found.unaliased;
     unaliased_wrong += found.unaliased && !look.right();

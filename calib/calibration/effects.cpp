@@ -80,17 +80,16 @@ std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOption
 }
 
 /// Nothing where the corners do not determine it.
-void test_aspect(const RigEstimate& usual, EffectsTest& test) {
+std::optional<AspectEstimate> tested_aspect(const RigEstimate& usual) {
   const std::vector<Eigen::Vector3d>& target_m = usual.evidence->observations.target_m;
   std::vector<BoardField> unknowns = bend_fields(target_m);
   unknowns.push_back(aspect_field(target_m));
   try {
     const BoardTest all = board_test(usual, unknowns);
-    const double value = all.value.tail<1>()[0];
-    const double variance = all.covariance.bottomRightCorner<1, 1>()(0, 0);
-    test.aspect = AspectEstimate{value, std::sqrt(variance)};
-    test.aspect_p_value = chi_squared_survival(value * value / variance, 1);
+    return AspectEstimate{all.value.tail<1>()[0],
+                          std::sqrt(all.covariance.bottomRightCorner<1, 1>()(0, 0))};
   } catch (const Error&) {
+    return std::nullopt;
   }
 }
 
@@ -159,7 +158,12 @@ void move_to_effects(const CalibrationOptions& options,
   summary.trust_warnings.emplace_back(no_minimum);
 }
 
-bool EffectsTest::has_aspect() const { return aspect && aspect_p_value < aspect_level; }
+double EffectsTest::aspect_p_value() const {
+  if (!aspect) return 1;
+  const double z = aspect->value / aspect->sigma;
+  return chi_squared_survival(z * z, 1);
+}
+bool EffectsTest::has_aspect() const { return aspect_p_value() < aspect_level; }
 bool EffectsTest::tells_aspect() const { return aspect && aspect->sigma < told_aspect; }
 bool EffectsTest::has_bend() const { return bend && bend->p_value < bend_level; }
 bool EffectsTest::has_shape() const { return has_bend() || (shape && shape->p_value < level); }
@@ -198,14 +202,14 @@ RigEstimate with_found_effects(RigEstimate usual,
     return usual;
   };
   try {
-    if (reason_not_to_test(usual, options).empty()) test_aspect(usual, test);
+    if (reason_not_to_test(usual, options).empty()) test.aspect = tested_aspect(usual);
     if (test.has_aspect()) {
       options.board_aspect = true;
       usual = calibrate(observations, options);
     }
-    const EffectsTest of_aspect = std::exchange(test, test_effects(usual, options));
-    test.aspect = of_aspect.aspect;
-    test.aspect_p_value = of_aspect.aspect_p_value;
+    const std::optional<AspectEstimate> aspect = test.aspect;
+    test = test_effects(usual, options);
+    test.aspect = aspect;
     options.board_shape = test.has_shape();
     options.motion = test.has_motion();
     options.baseline_motion = options.motion && test.along_baseline;

@@ -63,9 +63,9 @@ struct EffectsTest {
   std::optional<BoardTest> bend;          ///< of the board; of few views
   bool along_baseline = false;            ///< isotropy is rejected
   std::optional<AspectEstimate> aspect;   ///< as tested
-  double aspect_p_value = 1;
-  std::string not_tested;  ///< why shape and motion were not; empty if they were
+  std::string not_tested;                 ///< why shape and motion were not; empty if they were
 
+  double aspect_p_value() const;  ///< Wald's; 1 where it was not tested
   bool has_aspect() const;
   bool tells_aspect() const;  ///< to 0.05 %, a quarter of what printers do
   bool has_bend() const;

@@ -77,7 +77,7 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
 /// " (p = 0.001)", or nothing for effects that were asked for.
 template <class Test>
 std::string found_text(const std::optional<Test>& test) {
-  return test ? fmt::format(" ({})", p_text(*test)) : "";
+  return test ? fmt::format(" ({})", p_text(test->p_value)) : "";
 }
 
 /// The random effects of the calibration, one a line, and the tests that found them.
@@ -103,39 +103,37 @@ std::string effects_text(const CalibrationEffects& effects, const EffectsTest& t
 std::string no_effects_text(const EffectsTest& test) {
   std::string text = "random effects of the board: ";
   text += test.not_tested.empty() ? "none in use" : "not looked for: " + test.not_tested;
-  if (test.bend) text += "; no bend found, " + p_text(*test.bend);
-  if (test.shape) text += ", shape " + p_text(*test.shape);
-  if (test.motion) text += ", motion " + p_text(*test.motion);
+  if (test.bend) text += "; no bend found, " + p_text(test.bend->p_value);
+  if (test.shape) text += ", shape " + p_text(test.shape->p_value);
+  if (test.motion) text += ", motion " + p_text(test.motion->p_value);
   return text + "\n";
 }
 
 /// What the views tell of the board's aspect; nothing if it was not tested.
 std::string aspect_text(const EffectsTest& test) {
   if (!test.aspect) return "";
-  const ComponentTest as_tested{0, test.aspect_p_value};
+  const std::string p = p_text(test.aspect_p_value());
   if (test.has_aspect()) {
     return fmt::format(
-        "the board's x and y are not in the ratio given ({}): its aspect is estimated, and which "
-        "of "
-        "the two is as given is open, so that the rig's scale is uncertain by {:.3f} %\n",
-        p_text(as_tested), 50 * std::abs(test.aspect->value));
+        "the board's x and y are not in the ratio given ({}): its aspect is estimated, and "
+        "which of the two is as given is open, so that the rig's scale is uncertain by {:.3f} %\n",
+        p, 50 * std::abs(test.aspect->value));
   }
-  const std::string found = fmt::format("board aspect: as given, {} (to {:.3f} %)\n",
-                                        p_text(as_tested), 100 * test.aspect->sigma);
+  const std::string found =
+      fmt::format("board aspect: as given, {} (to {:.3f} %)\n", p, 100 * test.aspect->sigma);
   if (test.tells_aspect()) return found;
   return fmt::format(
-      "board aspect: these views tell it from other fx and fy to {:.2f} % only: if the board may "
-      "be "
-      "stretched, turn it by 90 degrees in some views\n",
+      "board aspect: these views tell it from other fx and fy to {:.2f} % only: if the board "
+      "may be stretched, turn it by 90 degrees in some views\n",
       100 * test.aspect->sigma);
 }
 
-Json aspect_json(const EffectsTest& test) {
+Json aspect_test_json(const EffectsTest& test) {
   if (!test.aspect) return nullptr;
-  return {{"value", test.aspect->value},
-          {"sigma", test.aspect->sigma},
-          {"p_value", test.aspect_p_value},
-          {"told", test.tells_aspect()}};
+  Json json = aspect_json(*test.aspect);
+  json["p_value"] = test.aspect_p_value();
+  json["told"] = test.tells_aspect();
+  return json;
 }
 
 /// Null for what was not tested.
@@ -144,7 +142,7 @@ Json effects_test_json(const EffectsTest& test) {
             {"motion", test_json(test.motion)},
             {"isotropy", test_json(test.isotropy)},
             {"bend", test_json(test.bend)},
-            {"aspect", aspect_json(test)}};
+            {"aspect", aspect_test_json(test)}};
   if (!test.not_tested.empty()) json["not_tested"] = test.not_tested;
   return json;
 }

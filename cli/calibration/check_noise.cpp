@@ -61,16 +61,16 @@ std::string noise_text(const CornerNoiseEstimate& found, const Rig& rig) {
   std::string text = fmt::format(
       "corner noise by components: {:.3f} px white\n"
       "  {:.3f} px smooth over {:.0f} mm of the board ({})\n",
-      noise.white_px, noise.field_px, 1e3 * noise.field_length_m, p_text(*found.field));
+      noise.white_px, noise.field_px, 1e3 * noise.field_length_m, p_text(found.field->p_value));
   if (!found.motion) return text;
   if (!(found.motion->ratio > 0)) {
-    return text +
-           fmt::format("  no motion of the board between exposures ({})\n", p_text(*found.motion));
+    return text + fmt::format("  no motion of the board between exposures ({})\n",
+                              p_text(found.motion->p_value));
   }
   text += fmt::format(
       "  {} and {:.2f} mrad, each axis, of motion of the board between exposures ({})\n",
       motion_words(noise.motion_m, noise.motion_baseline_m), 1e3 * noise.motion_rad,
-      p_text(*found.motion));
+      p_text(found.motion->p_value));
   for (const FrameMotion& m : found.moved()) {
     text += fmt::format(
         "  the board moved {:.1f} mm and turned {:.1f} mrad between the exposures of frame {}{}\n",

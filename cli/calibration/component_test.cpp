@@ -29,10 +29,8 @@ std::string motion_words(double motion_m, double motion_baseline_m) {
                      1e3 * motion_m);
 }
 
-std::string p_text(const ComponentTest& test) {
-  return test.p_value < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", test.p_value);
+std::string p_text(double p_value) {
+  return p_value < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", p_value);
 }
-
-std::string p_text(const BoardTest& test) { return p_text(ComponentTest{test.chi2, test.p_value}); }
 
 }  // namespace vernier::cli

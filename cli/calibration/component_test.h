@@ -20,7 +20,6 @@ Json test_json(const std::optional<BoardTest>& test);
 std::string motion_words(double motion_m, double motion_baseline_m);
 
 /// "p = 0.0123"
-std::string p_text(const ComponentTest& test);
-std::string p_text(const BoardTest& test);
+std::string p_text(double p_value);
 
 }  // namespace vernier::cli

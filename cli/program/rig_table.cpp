@@ -124,6 +124,10 @@ std::string rig_table(const RigEstimate& estimate) {
   return text;
 }
 
+Json aspect_json(const AspectEstimate& aspect) {
+  return {{"value", aspect.value}, {"sigma", aspect.sigma}};
+}
+
 Json effects_json(const CalibrationEffects& effects) {
   return {{"white_px", effects.white_px},
           {"field_px", effects.field_px},
@@ -172,8 +176,7 @@ Json rig_json(const RigEstimate& estimate) {
     json["board_warp_m"] = {warp_m->x(), warp_m->y()};
   }
   if (estimate.calibration && estimate.calibration->board_aspect) {
-    const AspectEstimate& aspect = *estimate.calibration->board_aspect;
-    json["board_aspect"] = {{"value", aspect.value}, {"sigma", aspect.sigma}};
+    json["board_aspect"] = aspect_json(*estimate.calibration->board_aspect);
   }
   if (estimate.covariance_mvb) json["sigma_mvb"] = list(deviations(*estimate.covariance_mvb));
   if (estimate.covariance) {

@@ -18,6 +18,7 @@ Json rig_json(const RigEstimate& estimate);
 
 /// The components of the random effects, 0 where not estimated.
 Json effects_json(const CalibrationEffects& effects);
+Json aspect_json(const AspectEstimate& aspect);
 
 /// Describes the first principal directions, one per line, with their fraction of the scaled
 /// variance.

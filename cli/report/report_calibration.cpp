@@ -67,9 +67,7 @@ Json summary_json(const RigEstimate& estimate) {
             {"warnings", s.warnings},
             {"doubts", s.trust_warnings}};
   if (s.effects) json["effects"] = effects_json(*s.effects);
-  if (s.board_aspect) {
-    json["board_aspect"] = {{"value", s.board_aspect->value}, {"sigma", s.board_aspect->sigma}};
-  }
+  if (s.board_aspect) json["board_aspect"] = aspect_json(*s.board_aspect);
   if (estimate.evidence) {
     const CalibrationEvidence& evidence = *estimate.evidence;
     std::size_t corners = 0;

@@ -26,7 +26,6 @@
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_sets.h"
 #include "cli/simulation/world_view.h"
-#include "localise/place.h"
 #include "sim/buildings/building.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
@@ -114,8 +113,7 @@ Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
     const Aliases aliases =
-        finder.aliases(places.draw(options.seed, static_cast<std::uint32_t>(i)),
-                       [&](const localise::Pose2D& pose) { return places.density(pose); });
+        finder.aliases(places.draw(options.seed, static_cast<std::uint32_t>(i)), &places);
     const QueryCeiling query = query_ceiling(aliases);
     sum.unique_share += query.unaliased;
     sum.undetermined_share += !aliases.determined;

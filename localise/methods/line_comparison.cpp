@@ -162,12 +162,12 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   posterior.off_map = off_map;
   double observations = 0;
   for (const Seen& look : query.looks) observations += look.view.observations;
+  EvidenceBetween between;
+  if (options_.stages.compare && options_.repeats > 0) {
+    between = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); };
+  }
   const std::vector<WeightedMode> modes =
-      options_.stages.compare && options_.repeats > 0
-          ? pose_posterior(
-                query.compared, observations, map_.nodes.size(), posterior,
-                [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); })
-          : pose_posterior(query.compared, observations, map_.nodes.size(), posterior);
+      pose_posterior(query.compared, observations, map_.nodes.size(), posterior, between);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.

@@ -11,6 +11,7 @@
 
 #include "calib/rig.h"
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/floor_grid.h"
 #include "sim/study/free_floor.h"
@@ -49,19 +50,19 @@ bool mostly(const std::vector<ViewEdge>& edges,
   return true;
 }
 
-/// Centres of discs of radius r that hold as many of the points as any that holds point i: the
-/// point itself, and those with it and another on the rim.
-std::vector<Eigen::Vector2d> disc_centres(const std::vector<Eigen::Vector2d>& points,
-                                          std::size_t i,
+/// Centres of discs of radius r that hold as many points as any that holds this one: the point
+/// itself, and those with it and one of those near it on the rim.
+std::vector<Eigen::Vector2d> disc_centres(const Eigen::Vector2d& point,
+                                          const std::vector<Eigen::Vector2d>& near,
                                           double r) {
-  std::vector<Eigen::Vector2d> centres{points[i]};
-  for (const Eigen::Vector2d& other : points) {
-    const Eigen::Vector2d half = (other - points[i]) / 2;
+  std::vector<Eigen::Vector2d> centres{point};
+  for (const Eigen::Vector2d& other : near) {
+    const Eigen::Vector2d half = (other - point) / 2;
     if (half.norm() > r || half.norm() < 1e-9) continue;
     const Eigen::Vector2d across = Eigen::Vector2d(-half.y(), half.x()).normalized();
     const double rise = std::sqrt(r * r - half.squaredNorm());
-    centres.emplace_back(points[i] + half + rise * across);
-    centres.emplace_back(points[i] + half - rise * across);
+    centres.emplace_back(point + half + rise * across);
+    centres.emplace_back(point + half - rise * across);
   }
   return centres;
 }
@@ -71,15 +72,18 @@ double heaviest_disc(const std::vector<Eigen::Vector2d>& points,
                      const std::vector<double>& weights,
                      double r) {
   double heaviest = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::vector<std::size_t> near;  // no disc that holds point i holds others
+  for (const Eigen::Vector2d& point : points) {
+    std::vector<Eigen::Vector2d> near;  // no disc that holds the point holds others
+    std::vector<double> weights_near;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      if ((points[k] - points[i]).norm() <= 2 * r + 1e-9) near.push_back(k);
+      if ((points[k] - point).norm() > 2 * r + 1e-9) continue;
+      near.push_back(points[k]);
+      weights_near.push_back(weights[k]);
     }
-    for (const Eigen::Vector2d& centre : disc_centres(points, i, r)) {
+    for (const Eigen::Vector2d& centre : disc_centres(point, near, r)) {
       double sum = 0;
-      for (const std::size_t k : near) {
-        if ((points[k] - centre).norm() <= r + 1e-9) sum += weights[k];
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        if ((near[k] - centre).norm() <= r + 1e-9) sum += weights_near[k];
       }
       heaviest = std::max(heaviest, sum);
     }
@@ -141,7 +145,8 @@ bool AliasFinder::looks_like(const std::vector<ViewEdge>& view, const Pose2D& po
   return mostly(there, in(view)) && mostly(view, in(there));
 }
 
-Aliases AliasFinder::aliases(const Pose2D& pose, const Density& density) const {
+Aliases AliasFinder::aliases(const Pose2D& pose, const QueryPlaces* places) const {
+  const auto density = [&](const Pose2D& at) { return places ? places->density(at) : 1.0; };
   Aliases result;
   const View view(edges_in_view(visibility_, rig_, options_, pose));
   std::vector<Pose2D>& found = result.poses;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -13,6 +12,10 @@
 #include "sim/study/look_alike_poses.h"
 #include "sim/study/wire_frame.h"
 #include "sim/visibility.h"
+
+namespace vernier::sim {
+class QueryPlaces;
+}
 
 namespace vernier::sim::internal {
 
@@ -64,14 +67,9 @@ class AliasFinder {
   /// Keeps a reference to `visibility`; `rig` is the true rig.
   AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options);
 
-  /// A relative density of the queries, as QueryPlaces::density.
-  using Density = std::function<double(const localise::Pose2D&)>;
-
-  /// Aliases at which the density is above 0, with it as their weight. The given pose counts at
-  /// least 1.
-  Aliases aliases(
-      const localise::Pose2D& pose,
-      const Density& density = [](const localise::Pose2D&) { return 1.0; }) const;
+  /// With the density of the queries as weights; poses at which it is 0 are left out, but for the
+  /// given one, which counts at least 1. Without places all poses are equally likely.
+  Aliases aliases(const localise::Pose2D& pose, const QueryPlaces* places = nullptr) const;
 
  private:
   struct View {

@@ -38,12 +38,16 @@ Pose2D pose_that_brings(const Eigen::Vector2d& seen_m,
 
 double angle(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
 
+/// Of unit vectors; otherwise times their lengths.
+double sine_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 /// Distance of a point from a line on the floor, positive on its left.
 double left_of(const Eigen::Vector2d& at,
                const Eigen::Vector2d& on_line,
                const Eigen::Vector2d& direction) {
-  const Eigen::Vector2d d = at - on_line;
-  return direction.x() * d.y() - direction.y() * d.x();
+  return sine_between(direction, at - on_line);
 }
 
 bool fit_uprights(const UprightEdges& world,
@@ -66,10 +70,6 @@ bool fit_uprights(const UprightEdges& world,
 /// Direction of a level edge on the floor.
 Eigen::Vector2d direction_of(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
   return (b_m - a_m).head<2>().normalized();
-}
-
-double sine_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 /// Where lines on the floor cross: p + s d = q + t e.

@@ -113,13 +113,12 @@ std::vector<std::pair<int, QueryCeiling>> UnitComputer::queries(const WorkUnit& 
   const StudyCell& cell = *work_.ceilings[static_cast<std::size_t>(unit.ceiling)].cell;
   const std::shared_ptr<const AliasFinder> aliases = finder(unit.ceiling);
   const QueryWorld world = scenes_.queries(cell);
-  const auto density = [&](const localise::Pose2D& pose) { return world.places->density(pose); };
   std::vector<std::pair<int, QueryCeiling>> found;
   for (const int query : unit.queries) {
     if (stop.stop_requested()) break;
     const localise::Pose2D pose =
         world.places->draw(cell.experiment.seed, static_cast<std::uint32_t>(query));
-    found.emplace_back(query, query_ceiling(aliases->aliases(pose, density)));
+    found.emplace_back(query, query_ceiling(aliases->aliases(pose, world.places.get())));
   }
   return found;
 }

@@ -296,8 +296,7 @@ TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {
   double sum = 0;
   const auto places = map_poses(test::small_office().route, 2);
   const QueryPlaces queries(test::small_office_visibility(), QueryProtocol::anywhere, 1.2);
-  const auto density = [&](const Pose2D& pose) { return queries.density(pose); };
-  for (const Pose2D& place : places) sum += query_ceiling(finder.aliases(place, density)).right;
+  for (const Pose2D& place : places) sum += query_ceiling(finder.aliases(place, &queries)).right;
   EXPECT_GT(sum / static_cast<double>(places.size()), 0.9);
 }
 
@@ -340,8 +339,7 @@ TEST(AliasFinder, StopsAtAThousandAliases) {
   }
   const Visibility asked_in_three(world);
   const QueryPlaces places(asked_in_three, QueryProtocol::path, 1.2);
-  const Aliases three =
-      finder.aliases({2, 1, 1.5}, [&](const Pose2D& pose) { return places.density(pose); });
+  const Aliases three = finder.aliases({2, 1, 1.5}, &places);
   EXPECT_EQ(three.elsewhere(), 2);
   EXPECT_DOUBLE_EQ(query_ceiling(three).right, 1.0 / 3);
 }
@@ -361,8 +359,7 @@ TEST(AliasFinder, AliasesOfAShortPeriodAreToldApart) {
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
   const QueryPlaces places(visibility, QueryProtocol::near_path, 1.2);
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
-    const Aliases found = finder.aliases(places.draw(3, trial),
-                                         [&](const Pose2D& pose) { return places.density(pose); });
+    const Aliases found = finder.aliases(places.draw(3, trial), &places);
     EXPECT_EQ(query_ceiling(found), (QueryCeiling{0.5, false})) << trial;
   }
 }

@@ -6,9 +6,10 @@
 // time, one thread.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <vector>
 
+#include "calib/base/decompositions.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/estimate/held_parameters.h"
@@ -77,18 +78,17 @@ class DenseFrames {
     }
     S.diagonal().tail(shape) = prior;
     for (std::size_t f = 0; f < rows_.size(); ++f) {
-      const Eigen::LLT<MatrixXd> V(corner_covariance(rows_[f], noise, target_m_));
+      const Cholesky V(corner_covariance(rows_[f], noise, target_m_));
       const MatrixXd ViB = V.solve(MatrixXd(rows_[f].by_pose));
       const MatrixXd N = rows_[f].by_pose.transpose() * ViB;
-      Q.push_back(V.solve(MatrixXd(MatrixXd::Identity(ViB.rows(), ViB.rows()))) -
-                  ViB * N.ldlt().solve(MatrixXd(ViB.transpose())));
+      Q.push_back(V.inverse() - ViB * Cholesky(N).solve(MatrixXd(ViB.transpose())));
       QA.push_back(Q[f] * A_[f]);
       S += A_[f].transpose() * QA[f];
       score += QA[f].transpose() * rows_[f].residual_px;
     }
     const VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<MatrixXd> factor(MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
-    const MatrixXd root = factor.matrixL().solve(MatrixXd(scale.asDiagonal()));
+    const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
+    const MatrixXd root = factor.solve_lower(MatrixXd(scale.asDiagonal()));
     const VectorXd z = -root.transpose() * (root * score);
     VectorXd gradient = VectorXd::Zero(7);
     for (std::size_t f = 0; f < rows_.size(); ++f) {

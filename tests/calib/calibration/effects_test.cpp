@@ -24,6 +24,7 @@
 #include "calib/rig_file.h"
 #include "calib/uncertainty/joint_information.h"
 #include "tests/support/bent_board.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/error_message.h"
 #include "tests/support/noisy_board.h"
 #include "tests/support/scenes.h"
@@ -306,14 +307,11 @@ TEST(Effects, OfTheBoardsGivenTheRigAreTheInverseOfAllEquations) {
       J.middleCols<6>(shared + 6 * f) = frame.by_pose;
       const Eigen::MatrixXd V =
           corner_covariance(frame, noise_of(effects), evidence.observations.target_m);
-      N += J.transpose() * V.ldlt().solve(J);
+      N += J.transpose() * test::inverse(V) * J;
     }
     const Eigen::VectorXd scale = N.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd C = scale.asDiagonal() *
-                              Eigen::MatrixXd(scale.asDiagonal() * N * scale.asDiagonal())
-                                  .ldlt()
-                                  .solve(Eigen::MatrixXd::Identity(N.rows(), N.cols())) *
-                              scale.asDiagonal();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * N * scale.asDiagonal();
+    const Eigen::MatrixXd C = scale.asDiagonal() * test::inverse(scaled) * scale.asDiagonal();
     const Eigen::MatrixXd C_rig = C.topLeftCorner(n, n);
     for (const Eigen::Index f : {Eigen::Index{0}, frames - 1}) {
       const auto& given = poses.frames[static_cast<std::size_t>(f)];

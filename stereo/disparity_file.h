@@ -29,6 +29,8 @@ struct DisparityFileOptions {
   double scale = 1;
   /// Default: true for integer formats, false for floating-point ones.
   std::optional<bool> zero_is_unknown;
+  /// A further value of the file that means unknown; NaN: none.
+  double unknown = std::numeric_limits<double>::quiet_NaN();
   /// Smaller disparities are set to unknown.
   double min_px = -std::numeric_limits<double>::infinity();
 };

@@ -17,6 +17,9 @@ struct EdgeDisparity {
   float disparity_px = std::numeric_limits<float>::quiet_NaN();  ///< NaN: no match
   float sigma_px = std::numeric_limits<float>::quiet_NaN();  ///< standard deviation; NaN: not given
   float confidence = 0;  ///< larger is more certain; used for error–density curves
+  /// Of a dense map whose disparity here is that of the foreground around the edge, the pixel's
+  /// own; NaN: the same.
+  float own_px = std::numeric_limits<float>::quiet_NaN();
 
   bool matched() const { return disparity_px == disparity_px; }
 };

@@ -30,7 +30,8 @@ struct EdgeMetrics {
   double density = 0;  ///< matched / edges
   /// Fractions of the matched edges with |error| above 0.5, 1, 2 and 3 px.
   double bad_0_5 = 0, bad_1 = 0, bad_2 = 0, bad_3 = 0;
-  double rms_inlier_px = 0;   ///< RMS of errors up to 1 px
+  int inliers = 0;            ///< errors up to 1 px …
+  double rms_inlier_px = 0;   ///< … their RMS
   double bias_inlier_px = 0;  ///< their mean
 };
 

@@ -15,6 +15,9 @@ namespace vernier::stereo {
 struct StereoTruth {
   DisparityMap disparity;
   std::vector<std::uint8_t> occluded;  ///< one per pixel: 1 if not visible in the right image
+  /// Most known pixels have an unknown one around them: separate points, as of a laser scanner. An
+  /// unknown pixel then says nothing of the surfaces.
+  bool sparse = false;
 };
 
 /// Computes the left pixels that are not visible in the right image. Left pixel x maps to x − d in
@@ -40,7 +43,8 @@ struct TruthAtEdge {
   /// Along the row, regardless of discontinuities.
   float own_px = std::numeric_limits<float>::quiet_NaN();
   bool own_occluded = false;  ///< of the edge's own pixel
-  /// A discontinuity in the 5 x 5 pixels, or an unknown value in the 3 x 3.
+  /// A discontinuity in the 5 x 5 pixels, or an unknown value in the 3 x 3 of a truth that is not
+  /// sparse.
   bool discontinuity = false;
   float min_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   float max_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels

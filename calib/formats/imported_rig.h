@@ -20,7 +20,9 @@ class YamlNode;
 struct ImportOptions {
   std::optional<CameraModel> model = {};  ///< default: the smallest that represents it exactly
   std::optional<Eigen::Vector2i> size_px = {};  ///< of every camera, if the file has no size
-  double unit_m = 1;                            ///< the file's unit of length, metres
+  /// Of an image of the rig: the size of cameras of which neither the file nor `size_px` gives it.
+  std::optional<Eigen::Vector2i> image_size_px = {};
+  double unit_m = 1;  ///< the file's unit of length, metres
 };
 
 /// A rig imported from another tool's files.

@@ -22,6 +22,7 @@
 #include "calib/formats/mrcal_cameramodel.h"
 #include "calib/formats/opencv_calibration_file.h"
 #include "calib/formats/ros_camera_info.h"
+#include "calib/rig.h"
 #include "calib/rig_file.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -223,15 +224,31 @@ std::vector<fs::path> files_read(RigFormat format, std::vector<fs::path> inputs)
   return inputs;
 }
 
+void warn_of_far_cameras(const Rig& rig, const std::string& do_what, const Session& session) {
+  constexpr double far_m = 10;
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    const double distance_m = rig.T_camera_first[i].t.norm();
+    if (distance_m < far_m) continue;
+    session.warn(
+        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, {} "
+                    "--unit-m 0.001",
+                    rig.cameras[i].name, distance_m, do_what));
+  }
+}
+
 ReadRig read_named_rig(const std::string& named, Session& session, const std::string& image) {
   const std::vector<fs::path> files = named_files(named);
   const RigFormat format = named_format(files);
   ImportOptions options;
-  if (format == RigFormat::kitti && !image.empty()) {
+  if ((format == RigFormat::kitti || format == RigFormat::opencv) && !image.empty()) {
     const GreyLevels size_of = read_grey_levels(image);
-    options.size_px = Eigen::Vector2i(size_of.width_px, size_of.height_px);
+    const Eigen::Vector2i size_px(size_of.width_px, size_of.height_px);
+    (format == RigFormat::kitti ? options.size_px : options.image_size_px) = size_px;
   }
   ReadRig read = read_rig_as(format, files, options);
+  if (format != RigFormat::vernier) {
+    warn_of_far_cameras(read.estimate.rig, "write a rig.json by vernier convert", session);
+  }
   for (const std::string& note : read.notes) {
     if (format == RigFormat::vernier) {
       session.warn(note);

@@ -10,6 +10,7 @@
 
 #include "calib/formats/imported_rig.h"
 #include "calib/pose.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "cli/program/namespaces.h"
 #include "cli/program/session.h"
@@ -42,6 +43,10 @@ struct ReadRig {
 ReadRig read_rig_as(RigFormat format,
                     const std::vector<std::filesystem::path>& inputs,
                     const ImportOptions& options);
+
+/// Warns of cameras that are so far from the first that the file may be in millimetres, and says to
+/// "add" --unit-m 0.001, or in other words to `do_what` with it.
+void warn_of_far_cameras(const Rig& rig, const std::string& do_what, const Session& session);
 
 /// A rig by what an option `--rig` names: a rig.json, a shipped name, a file or folder of another
 /// tool, or several files of one, left first, separated by commas. Warnings and notes go to the

@@ -161,10 +161,11 @@ std::string EvaluationAtEqualDensity::text(const Json& json) {
                         100 * e.at("peer_bad_1").get<double>());
     if (e.at("ratio").is_number()) {
       text += fmt::format(", ratio {:.2f}", e.at("ratio").get<double>());
-      const Json& interval = e.at("ratio_interval_95");
-      if (interval[0].is_number()) {
-        text += fmt::format(" (95 % over scenes: {:.2f} … {:.2f})", interval[0].get<double>(),
-                            interval[1].get<double>());
+      const Json &low = e.at("ratio_interval_95")[0], &high = e.at("ratio_interval_95")[1];
+      if (low.is_number()) {
+        text += fmt::format(" (95 % over scenes: {:.2f} {})", low.get<double>(),
+                            high.is_number() ? fmt::format("… {:.2f}", high.get<double>())
+                                             : "or more: the other has no error in some scenes");
       }
     }
     if (!e.at("left_out").empty()) {

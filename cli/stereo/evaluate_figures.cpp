@@ -10,46 +10,46 @@
 
 namespace vernier::cli {
 
+namespace {
+
+/// Null where there is nothing of which it would be a rate.
+Json rate(double value, int of) { return of > 0 ? Json(value) : Json(); }
+
+}  // namespace
+
 Json figures_json(const MatcherScore& s, double time_ms) {
-  const EdgeMetrics& f = s.all;
-  if (f.matched == 0) {  // rates are undefined without matches
-    Json none{{"density", 0.0}};
-    for (const char* key : {"bad_0_5", "bad_1", "bad_2", "mismatch", "rms_inlier_px",
-                            "bias_inlier_px", "bad_1_smooth", "bad_1_discontinuity"}) {
-      none[key] = Json();
-    }
-    none["density_discontinuity"] = 0.0;
-    none["occluded_matched"] = static_cast<double>(s.occluded_matched) / std::max(1, s.occluded);
-    none["coverage_95"] = none["z_rms"] = Json();
-    none["time_ms"] = time_ms;
-    return none;
-  }
-  return {{"density", f.density},
-          {"bad_0_5", f.bad_0_5},
-          {"bad_1", f.bad_1},
-          {"bad_2", f.bad_2},
-          {"mismatch", s.mismatch},
-          {"rms_inlier_px", s.smooth.rms_inlier_px},
-          {"bias_inlier_px", s.smooth.bias_inlier_px},
-          {"bad_1_smooth", s.smooth.bad_1},
-          {"bad_1_discontinuity", s.discontinuity.bad_1},
-          {"density_discontinuity", s.discontinuity.density},
-          {"occluded_matched", static_cast<double>(s.occluded_matched) / std::max(1, s.occluded)},
-          {"coverage_95", s.stated > 0 ? Json(s.coverage_95) : Json()},
-          {"z_rms", s.stated > 0 ? Json(s.z_rms) : Json()},
+  const EdgeMetrics &all = s.all, &smooth = s.smooth, &discontinuity = s.discontinuity;
+  return {{"density", all.density},
+          {"bad_0_5", rate(all.bad_0_5, all.matched)},
+          {"bad_1", rate(all.bad_1, all.matched)},
+          {"bad_2", rate(all.bad_2, all.matched)},
+          {"mismatch", rate(s.mismatch, all.matched)},
+          {"rms_inlier_px", rate(smooth.rms_inlier_px, smooth.inliers)},
+          {"bias_inlier_px", rate(smooth.bias_inlier_px, smooth.inliers)},
+          {"bad_1_smooth", rate(smooth.bad_1, smooth.matched)},
+          {"bad_1_discontinuity", rate(discontinuity.bad_1, discontinuity.matched)},
+          {"density_discontinuity", rate(discontinuity.density, discontinuity.edges)},
+          {"occluded_matched",
+           rate(static_cast<double>(s.occluded_matched) / std::max(1, s.occluded), s.occluded)},
+          {"coverage_95", rate(s.coverage_95, s.stated)},
+          {"z_rms", rate(s.z_rms, s.stated)},
           {"time_ms", time_ms}};
 }
 
 Json mean_of(const std::vector<Json>& scenes) {
+  const bool all_match = std::none_of(
+      scenes.begin(), scenes.end(), [](const Json& scene) { return scene.at("bad_1").is_null(); });
   Json mean = scenes.front();
   for (auto& [key, value] : mean.items()) {
     double sum = 0;
-    bool all = true;
+    int count = 0;
     for (const Json& scene : scenes) {
-      all = all && scene.at(key).is_number();
-      if (all) sum += scene.at(key).get<double>();
+      if (!scene.at(key).is_number()) continue;
+      sum += scene.at(key).get<double>();
+      ++count;
     }
-    value = all ? Json(sum / static_cast<double>(scenes.size())) : Json();
+    const bool all = count == static_cast<int>(scenes.size());
+    value = rate(sum / std::max(1, count), all || all_match ? count : 0);
   }
   return mean;
 }
@@ -62,8 +62,8 @@ Json angles_json(const MatcherScore& score) {
                     {"to_deg", 10 * (i + 1)},
                     {"edges", f.edges},
                     {"density", f.density},
-                    {"bad_1", f.bad_1},
-                    {"rms_inlier_px", f.rms_inlier_px}});
+                    {"bad_1", rate(f.bad_1, f.matched)},
+                    {"rms_inlier_px", rate(f.rms_inlier_px, f.inliers)}});
   }
   return bins;
 }

@@ -17,7 +17,8 @@ inline constexpr const char* evaluation_file = "evaluation.json";
 Json figures_json(const MatcherScore& score, double time_ms);
 Json angles_json(const MatcherScore& score);
 
-/// Means over the scenes' JSON numbers; null if any is null.
+/// Means over the scenes in which a number is defined. A scene in which nothing matches leaves all
+/// rates undefined, so that no matcher gains by it.
 Json mean_of(const std::vector<Json>& scenes);
 
 /// The header and one line of the table.

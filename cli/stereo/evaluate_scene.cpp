@@ -6,11 +6,14 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
 
 #include "calib/error.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/session.h"
+#include "cli/stereo/row_doubt.h"
 #include "cli/stereo/swapped_pair.h"
 #include "stereo/canny_edges.h"
 #include "stereo/evaluation/stereo_scenes.h"
@@ -39,9 +42,10 @@ double cpu_ms() {
          ms(ended.ru_utime) + ms(ended.ru_stime);
 }
 
-/// Throws Error if corners match only with the images swapped.
+/// Throws Error if corners match only with the images swapped. A truth outside the range explains
+/// why they do not match.
 void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
-  if (field.known || !field.unrectified) return;
+  if (field.known || !field.unrectified || scene.out_of_range) return;
   const VerticalField other =
       vertical_field(RectifiedPair{scene.pair.right, scene.pair.left}, scene.file.range);
   if (!other.known || other.unrectified) return;
@@ -50,7 +54,7 @@ void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
       fmt::format(
           "left and right appear to be swapped: {} corners match as given, {} after swapping",
           field.matched, other.matched),
-      "swap --left and --right");
+      "swap --left and --right; if disparities are negative, give --min-disparity");
 }
 
 void repair(Scene& scene, bool wanted, Session& session) {
@@ -63,13 +67,40 @@ void repair(Scene& scene, bool wanted, Session& session) {
         scene.file.name + ": the rows are not aligned; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
     scene.pair.right = corrected_right(scene.pair.right, field);
+  } else if (const std::string doubt = row_doubt(field); !doubt.empty()) {
+    session.add_trust_warning(scene.file.name + ": " + doubt);
   } else if (field.significant) {
     session.warn(scene.file.name + ": the rows are slightly misaligned; --repair corrects this");
   }
 }
 
-/// Warns if the true disparities of some edges are outside the search range.
-void check_range(const Scene& scene, Session& session) {
+/// Doubts a truth of floating point that often is exactly 0 or -1, which many files mean as unknown
+/// and formats do not.
+void check_unknown(const Scene& scene, Session& session) {
+  if (scene.file.truth_unknown) return;
+  constexpr double often = 0.01, hardly = 0.1;  // of the known pixels; of those
+  constexpr float near_px = 1;
+  for (const double value : {0.0, -1.0}) {
+    const auto suspect = static_cast<float>(value / scene.file.truth_scale);
+    std::size_t known = 0, exact = 0, near = 0;
+    for (const float disparity : scene.map.disparity.values) {
+      known += disparity == disparity;
+      exact += disparity == suspect;
+      near += disparity != suspect && std::abs(disparity - suspect) <= near_px;
+    }
+    const auto of = static_cast<double>(exact);
+    if (of < often * static_cast<double>(known) || static_cast<double>(near) > hardly * of)
+      continue;
+    session.add_trust_warning(fmt::format(
+        "{}: {:.0f} % of the ground truth is exactly {:g} and is taken as disparity: if it means "
+        "unknown, give --truth-unknown {:g} (truth_unknown in a list), otherwise none",
+        scene.file.name, 100 * of / static_cast<double>(known), value, value));
+  }
+}
+
+/// Doubts the search range, or the truth's scale, if the true disparities of many edges are outside
+/// it, and warns if those of some are.
+void check_range(Scene& scene, Session& session) {
   constexpr double some = 0.02, much = 0.2;
   const DisparityRange& range = scene.file.range;
   float least = 0, most = 0;
@@ -84,11 +115,17 @@ void check_range(const Scene& scene, Session& session) {
   }
   const double share = static_cast<double>(outside) / std::max(1, known);
   if (share < some) return;
-  const std::string words = fmt::format(
+  std::string words = fmt::format(
       "{}: the true disparities of {:.0f} % of the edges are outside the search range of {} to {} "
       "px; they range from {:.0f} to {:.0f} px",
       scene.file.name, 100 * share, range.min_px, range.max_px, least, most);
-  if (share > much) {
+  constexpr float of_kitti = 256;
+  if (scene.file.truth_scale == 1 && most >= of_kitti &&
+      most / of_kitti <= static_cast<float>(range.max_px) + 1) {
+    words += "; if the file has 256 values per pixel, as KITTI's, give --truth-scale 256";
+  }
+  scene.out_of_range = share > much;
+  if (scene.out_of_range) {
     session.add_trust_warning(words);
   } else {
     session.warn(words);
@@ -98,7 +135,8 @@ void check_range(const Scene& scene, Session& session) {
 }  // namespace
 
 Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& session) {
-  Scene scene{file, {}, {}, {}, {}, 0};
+  Scene scene;
+  scene.file = file;
   scene.pair.left = read_image(file.left.string(), session);
   scene.pair.right = read_image(file.right.string(), session);
   const GreyLevels &left = scene.pair.left, &right = scene.pair.right;
@@ -111,7 +149,7 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
   check_matcher_input(scene.pair, file.range, file.left.string());
   check_two_images(scene.pair, file.left.string(), file.right.string());
   scene.map = read_stereo_truth(file, left.width_px, left.height_px);
-  repair(scene, wants_repair, session);
+  check_unknown(scene, session);
   const double start = cpu_ms();
   scene.edges = canny_edges(left);
   scene.edges_ms = cpu_ms() - start;
@@ -121,6 +159,7 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
   }
   scene.truth = truth_at(scene.map, scene.edges);
   check_range(scene, session);
+  repair(scene, wants_repair, session);
   return scene;
 }
 
@@ -139,6 +178,7 @@ Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOpti
 }
 
 void check_not_swapped(const Matcher& matcher, const Scene& scene, const Run& run) {
+  if (scene.out_of_range) return;
   check_not_swapped(
       matcher, run.found, scene.file.range,
       [&] {

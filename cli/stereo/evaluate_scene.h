@@ -22,6 +22,7 @@ struct Scene {
   std::vector<TruthAtEdge> truth;
   StereoTruth map;  ///< the full map
   double edges_ms = 0;
+  bool out_of_range = false;  ///< the true disparities of many edges are outside the search range
 };
 
 /// The result of a matcher on a scene.

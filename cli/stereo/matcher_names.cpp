@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
@@ -19,11 +21,16 @@
 namespace vernier::cli {
 namespace {
 
-Matcher matcher_named(const std::string& name) {
+std::optional<Matcher> built_in(const std::string& name) {
   if (name == "edge") return edge_matcher();
   if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
+  return std::nullopt;
+}
+
+Matcher matcher_named(const std::string& name) {
+  if (std::optional<Matcher> matcher = built_in(name)) return *std::move(matcher);
   throw Error("--matcher", "unknown matcher " + in_quotes(name),
               "supported: edge, stretch, bm, sgbm, or a name defined by --command NAME=…");
 }
@@ -44,6 +51,10 @@ Matcher command_matcher(const std::string& text,
   Matcher matcher =
       external_matcher(named ? text.substr(end + 1) : text, {.time_limit_s = time_limit_s});
   if (named) matcher.name = text.substr(0, end);
+  if (named && built_in(matcher.name)) {
+    throw Error("--command", in_quotes(matcher.name) + " is the name of a matcher of this program",
+                "give the command another name");
+  }
   const std::string base = matcher.name;
   for (int k = 2; !named && is_named(others, matcher.name); ++k) {
     matcher.name = base + "-" + std::to_string(k);

@@ -24,6 +24,7 @@
 #include "cli/program/picture.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/stereo/row_doubt.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -132,6 +133,11 @@ void check_alignment(const Rectified& rectified,
     } else {
       session.warn(words);
     }
+  }
+  if (const std::string doubt = row_doubt(field); !options.repair && !doubt.empty()) {
+    session.add_trust_warning(doubt +
+                              "; check that the rig matches the current cameras and that "
+                              "the images are simultaneous");
   }
   if (!field.unrectified) return;
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {

@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <limits>
 #include <tuple>
 
 #include "cli/program/option_checks.h"
+#include "cli/program/session.h"
 #include "stereo/evaluation/stereo_scenes.h"
 
 namespace vernier::cli {
@@ -27,6 +29,10 @@ void add_scene_options(CLI::App& verb, SceneOptions& o) {
       ->check(finite_and_positive)
       ->excludes(scenes)
       ->capture_default_str();
+  verb.add_option("--truth-unknown", o.truth_unknown,
+                  "ground truth value that means unknown, such as 0 or -1 in PFM and .npy; none: "
+                  "no value does")
+      ->excludes(scenes);
   verb.add_option("--max-disparity", o.one.range.max_px, "largest disparity to search, pixels")
       ->excludes(scenes)
       ->capture_default_str();
@@ -46,6 +52,11 @@ std::vector<StereoSceneFile> scene_files(const SceneOptions& options) {
   if (!options.scenes.empty()) return read_stereo_scenes(options.scenes);
   StereoSceneFile scene = options.one;
   scene.name = scene.left.stem().string();
+  if (options.truth_unknown == "none") {
+    scene.truth_unknown = std::numeric_limits<double>::quiet_NaN();
+  } else if (!options.truth_unknown.empty()) {
+    scene.truth_unknown = parse_numbers(options.truth_unknown, 1, "--truth-unknown")[0];
+  }
   return {scene};
 }
 

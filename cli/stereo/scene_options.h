@@ -17,6 +17,7 @@ namespace vernier::cli {
 struct SceneOptions {
   std::string scenes;
   StereoSceneFile one;
+  std::string truth_unknown;  ///< of that one: a number, or "none"
 };
 
 /// Adds --scenes, or --left --right --truth with --right-truth, --truth-scale, --max-disparity and

@@ -305,8 +305,9 @@ void add_cameras(CLI::App* verb, StereoInputOptions& o) {
       ->check(finite);
   verb->add_option("--max-disparity", o.max_disparity_px,
                    "largest disparity to search, px (default: a quarter of the width)");
-  verb->add_option("--min-disparity", o.min_disparity_px, "smallest disparity to search, px")
-      ->capture_default_str();
+  verb->add_option("--min-disparity", o.min_disparity_px,
+                   "smallest disparity to search, px (default: 0, or that of points far away where "
+                   "the principal points differ)");
   verb->add_flag("--repair", o.repair,
                  "correct the right image by the estimated vertical field, if significant");
   verb->add_option("--threads", o.threads, "number of threads for rectification (0: all)")

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/stereo_input.h"
+#include "cli/stereo/row_doubt.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -92,6 +94,11 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
     } else {
       const std::vector<double> centre = parse_numbers(o.centre_px, 2, "--centre-px");
       g.centre_px = {centre[0], centre[1]};
+      if ((g.centre_px.array() < 0).any() ||
+          (g.centre_px.array() > size.cast<double>().array()).any()) {
+        session.warn(fmt::format("--centre-px {} is outside the image of {}x{} px", o.centre_px,
+                                 size[0], size[1]));
+      }
     }
     input.geometry = g;
     input.offset_px = o.offset_px;
@@ -99,9 +106,13 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
 }
 
 void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  take_cameras(o, input, session);
+  // Points far away have a disparity of minus the offset between the principal points.
+  if (!o.min_disparity_px && input.offset_px > 0) {
+    input.range.min_px = -static_cast<int>(std::ceil(std::min(input.offset_px, 1e6)));
+  }
   check_matcher_input(input.pair, input.range, o.right);
   check_two_images(input.pair, o.left, o.right);
-  take_cameras(o, input, session);
   input.field = vertical_field(input.pair, input.range);
   input.exchanged = [other = RectifiedPair{input.pair.right, input.pair.left}] { return other; };
 }
@@ -114,6 +125,8 @@ void repair_rows(bool wanted, StereoInput& input, Session& session) {
   if (wanted) {
     input.pair.right = corrected_right(input.pair.right, field);
     input.repaired = true;
+  } else if (const std::string doubt = row_doubt(field); !doubt.empty()) {
+    session.add_trust_warning(doubt);
   } else {
     session.warn("the rows are slightly misaligned; --repair corrects this");
   }
@@ -134,9 +147,9 @@ StereoInput read_stereo_input(const StereoInputOptions& options, Session& sessio
   check(options);
   StereoInput input;
   const int width = width_of(options, input, session);
-  input.range = {options.min_disparity_px,
-                 options.max_disparity_px.value_or(
-                     std::max(options.min_disparity_px + 1, width / default_range))};
+  const int least = options.min_disparity_px.value_or(0);
+  input.range = {least,
+                 options.max_disparity_px.value_or(std::max(least + 1, width / default_range))};
   if (options.rectified) {
     take_rectified(options, input, session);
   } else {

@@ -36,7 +36,7 @@ void check_not_swapped(const Matcher& matcher,
               fmt::format("left and right appear to be swapped: {:.0f} % of the edges match as "
                           "given, {:.0f} % after swapping",
                           100 * given, 100 * swapped),
-              "swap --left and --right");
+              "swap --left and --right; if disparities are negative, give --min-disparity");
 }
 
 }  // namespace vernier::cli

@@ -24,11 +24,17 @@ bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule) {
   return rule == DiscontinuityRule::foreground ? truth.occluded : truth.own_occluded;
 }
 
+float own_disparity_px(const EdgeDisparity& found) {
+  return std::isnan(found.own_px) ? found.disparity_px : found.own_px;
+}
+
 double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule) {
   const double before = std::min(0.0F, truth.crossing_px),
                after = std::max(0.0F, truth.crossing_px);
+  const bool outline = truth.discontinuity && rule == DiscontinuityRule::foreground;
+  const double found_px = outline ? found.disparity_px : own_disparity_px(found);
   const auto error_of = [&](double surface_px) {
-    const double error = found.disparity_px - surface_px;
+    const double error = found_px - surface_px;
     return error - std::clamp(error, before, after);
   };
   const double error = error_of(truth.disparity_px);

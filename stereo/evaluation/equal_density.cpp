@@ -3,11 +3,13 @@
 #include "stereo/evaluation/equal_density.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
 
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/statistics/bootstrap.h"
 #include "calib/statistics/cluster_interval.h"
 #include "stereo/matcher_evaluation.h"
@@ -87,12 +89,14 @@ EqualDensity at_equal_density(const std::vector<DensityCurves>& scenes,
   result.own_bad_1 = mean.own;
   result.peer_bad_1 = mean.peer;
   result.ratio = ratio_of(mean);
-  result.interval = cluster_interval(
+  // A ratio is not below 0, and scatters as much by a factor upwards as downwards.
+  const Interval of_log = cluster_interval(
       static_cast<int>(scenes.size()),
       [&](std::span<const std::size_t> drawn) {
-        return ratio_of(mean_of(pairs, best_setting(pairs, drawn), drawn));
+        return std::log(ratio_of(mean_of(pairs, best_setting(pairs, drawn), drawn)));
       },
       options);
+  result.interval = {std::exp(of_log.low), std::exp(of_log.high)};
   return result;
 }
 

@@ -24,7 +24,9 @@ struct EqualDensity {
   double density = 0;       ///< mean over scenes
   double own_bad_1 = 0, peer_bad_1 = 0;
   double ratio = 0;  ///< mean of own over mean of peer; infinite if only the peer's is 0
-  /// 95 %; scenes are resampled and the best setting chosen anew; the upper end may be infinite.
+  /// 95 %, of the logarithm; scenes are resampled and the best setting chosen anew; the lower end
+  /// may be 0 and the upper one infinite. NaN for fewer than three scenes, or a ratio of 0 or
+  /// infinity.
   Interval interval;
 };
 

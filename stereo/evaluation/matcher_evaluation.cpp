@@ -33,7 +33,6 @@ void check_sizes(const std::vector<EdgePoint>& edges,
 struct Tally {
   EdgeMetrics of;
   double squares = 0, sum = 0;
-  int inliers = 0;
 
   void add(bool matched, double error) {
     ++of.edges;
@@ -45,14 +44,14 @@ struct Tally {
     of.bad_2 += size > 2;
     of.bad_3 += size > mismatch_px;
     if (size > inlier_px) return;
-    ++inliers;
+    ++of.inliers;
     squares += error * error;
     sum += error;
   }
 
   EdgeMetrics figures() const {
     EdgeMetrics shares = of;
-    const double matched = std::max(1, of.matched), within = std::max(1, inliers);
+    const double matched = std::max(1, of.matched), within = std::max(1, of.inliers);
     shares.density = static_cast<double>(of.matched) / std::max(1, of.edges);
     for (double* bad : {&shares.bad_0_5, &shares.bad_1, &shares.bad_2, &shares.bad_3}) {
       *bad /= matched;

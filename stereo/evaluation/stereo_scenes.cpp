@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <set>
 
 #include "calib/base/atomic_file.h"
@@ -25,11 +26,12 @@ using namespace vernier::internal;
 namespace {
 
 DisparityMap read_map(const std::filesystem::path& file,
-                      double scale,
+                      const StereoSceneFile& scene,
                       int width_px,
                       int height_px) {
   DisparityFileOptions options;
-  options.scale = scale;
+  options.scale = scene.truth_scale;
+  if (scene.truth_unknown) options.unknown = *scene.truth_unknown;
   DisparityMap map = read_disparity(file, options);
   if (map.width_px != width_px || map.height_px != height_px) {
     throw Error(file.string(),
@@ -63,8 +65,8 @@ class SceneReader : private TomlReader {
  private:
   StereoSceneFile scene(const toml::table& pair) {
     check_keys(pair,
-               {"name", "left", "right", "truth", "right_truth", "truth_scale", "truth_kind",
-                "min_disparity", "max_disparity", "rig"},
+               {"name", "left", "right", "truth", "right_truth", "truth_scale", "truth_unknown",
+                "truth_kind", "min_disparity", "max_disparity", "rig"},
                "[[pair]]");
     StereoSceneFile scene;
     const toml::node& name = required(pair, "name", "[[pair]]");
@@ -85,6 +87,11 @@ class SceneReader : private TomlReader {
       if (!(scene.truth_scale > 0)) {
         fail(*node, "truth_scale is not positive", "give the file values per pixel of disparity");
       }
+    }
+    if (const auto* node = pair.get("truth_unknown")) {
+      const bool none = node->is_string() && text(*node, "truth_unknown") == "none";
+      scene.truth_unknown =
+          none ? std::numeric_limits<double>::quiet_NaN() : number(*node, "truth_unknown");
     }
     if (const auto* node = pair.get("truth_kind")) scene.truth_kind = kind(*node);
     scene.range = range(pair, owner);
@@ -143,9 +150,9 @@ std::vector<StereoSceneFile> read_stereo_scenes(const std::filesystem::path& fil
 }
 
 StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px) {
-  DisparityMap left = read_map(scene.truth, scene.truth_scale, width_px, height_px);
+  DisparityMap left = read_map(scene.truth, scene, width_px, height_px);
   if (scene.right_truth.empty()) return stereo_truth(std::move(left));
-  const DisparityMap right = read_map(scene.right_truth, scene.truth_scale, width_px, height_px);
+  const DisparityMap right = read_map(scene.right_truth, scene, width_px, height_px);
   return stereo_truth(std::move(left), &right);
 }
 

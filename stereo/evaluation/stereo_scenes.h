@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ struct StereoSceneFile {
   std::filesystem::path truth;        ///< disparities of the left image (stereo/disparity_file.h)
   std::filesystem::path right_truth;  ///< disparities of the right image; empty: none
   double truth_scale = 1;             ///< file values per pixel, in both
+  /// The value that means unknown, beside those of the formats (stereo/disparity_file.h); NaN: none
+  /// has this meaning.
+  std::optional<double> truth_unknown;
   TruthKind truth_kind = TruthKind::measured;
   DisparityRange range;       ///< search range
   std::filesystem::path rig;  ///< rig of the pair; empty: unknown
@@ -46,6 +50,7 @@ struct StereoSceneFile {
 ///     max_disparity = 64
 ///     right_truth = "teddy/disp6.png" # this and the rest are optional
 ///     min_disparity = 0
+///     truth_unknown = -1              # "none": no value means unknown
 ///     truth_kind = "measured"
 ///     rig = "teddy.rig.json"
 ///

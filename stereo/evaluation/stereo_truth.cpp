@@ -95,6 +95,22 @@ std::string size_text(int width_px, int height_px) {
   return fmt::format("{}x{}", width_px, height_px);
 }
 
+bool is_sparse(const DisparityMap& map) {
+  std::size_t known = 0, surrounded = 0;
+  for (int y = 1; y + 1 < map.height_px; ++y) {
+    for (int x = 1; x + 1 < map.width_px; ++x) {
+      if (!map.known(x, y)) continue;
+      ++known;
+      bool all = true;
+      for (int j = y - 1; j <= y + 1; ++j) {
+        for (int i = x - 1; i <= x + 1; ++i) all = all && map.known(i, j);
+      }
+      surrounded += all;
+    }
+  }
+  return 2 * surrounded < known;
+}
+
 TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
   const DisparityMap& map = truth.disparity;
   const int x = column_of(edge, map, "ground truth");
@@ -116,7 +132,7 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
     }
   }
   at.known = map.known(x, edge.y);
-  at.discontinuity = !all_known || MapWindow(map, x, edge.y, 2).has_step();
+  at.discontinuity = (!all_known && !truth.sparse) || MapWindow(map, x, edge.y, 2).has_step();
   at.own_px = at.known ? along_row(map, edge.row_x_px, edge.y) : NAN;
   at.own_occluded =
       truth.occluded[static_cast<std::size_t>(edge.y) * static_cast<std::size_t>(map.width_px) +
@@ -140,6 +156,7 @@ StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right) {
   check_known(left, "ground truth");
   StereoTruth truth;
   truth.occluded.assign(left.values.size(), 0);
+  truth.sparse = is_sparse(left);
   truth.disparity = std::move(left);
   for (int y = 0; y < truth.disparity.height_px; ++y) mark_occluded(truth, right, y);
   return truth;

@@ -59,7 +59,7 @@ WarpedScore evaluate(const WarpedPair& warped,
     }
     const double bias = warped.bias_px(edges[i].x, edges[i].y);
     if (!std::isfinite(bias)) continue;
-    const double error = found[i].disparity_px - (at.own_px - bias);
+    const double error = own_disparity_px(found[i]) - (at.own_px - bias);
     squares += error * error;
     ++count;
   }

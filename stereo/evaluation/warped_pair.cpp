@@ -148,6 +148,7 @@ WarpedPair rectified_by(const Rig& believed,
   warped.pair.right = resampled(pair.right, geometry.size_px, back(1), threads);
   warped.truth.disparity = warped.vertical_px = warped.bias_px = map_of_unknown(width, height);
   warped.truth.occluded.assign(truth.occluded.size(), 0);
+  warped.truth.sparse = truth.sparse;
   for_each_index(static_cast<std::size_t>(height), threads,
                  [&](std::size_t y) { warp_truth(detour, truth, static_cast<int>(y), warped); });
   return warped;

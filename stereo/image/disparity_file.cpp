@@ -175,7 +175,8 @@ DisparityMap read_disparity(const std::filesystem::path& file,
   for (const double value : stored.values) {
     const double disparity = value / options.scale;
     const bool known = std::abs(disparity) <= std::numeric_limits<float>::max() &&
-                       disparity >= options.min_px && !(zero_is_unknown && value == 0);
+                       disparity >= options.min_px && value != options.unknown &&
+                       !(zero_is_unknown && value == 0);
     map.values.push_back(known ? static_cast<float>(disparity)
                                : std::numeric_limits<float>::quiet_NaN());
   }

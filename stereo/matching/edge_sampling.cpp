@@ -3,6 +3,9 @@
 #include "stereo/matching/edge_sampling.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
 #include <limits>
 
 #include "stereo/canny_edges.h"
@@ -13,14 +16,20 @@
 namespace vernier::stereo::internal {
 namespace {
 
-float largest(const MapWindow& window) {
-  float most = -std::numeric_limits<float>::infinity();
+/// The largest disparity that two pixels of the window have within a pixel; NaN if no two agree.
+float foreground(const MapWindow& window) {
+  std::array<float, 9> known{};
+  std::size_t count = 0;
   for (int y = window.y0; y <= window.y1; ++y) {
     for (int x = window.x0; x <= window.x1; ++x) {
-      if (window.map.known(x, y)) most = std::max(most, window.map(x, y));
+      if (window.map.known(x, y)) known[count++] = window.map(x, y);
     }
   }
-  return most;
+  std::sort(known.begin(), known.begin() + count, std::greater<>());
+  for (std::size_t i = 1; i < count; ++i) {
+    if (known[i - 1] - known[i] <= step_px) return known[i - 1];
+  }
+  return std::numeric_limits<float>::quiet_NaN();
 }
 
 EdgeDisparity sample(const DisparityMap& map, const EdgePoint& edge, EdgeSampling sampling) {
@@ -31,7 +40,9 @@ EdgeDisparity sample(const DisparityMap& map, const EdgePoint& edge, EdgeSamplin
   if (!near.has_step()) {
     at.disparity_px = along_row(map, edge.row_x_px, edge.y);
   } else {
-    at.disparity_px = sampling == EdgeSampling::foreground ? largest(near) : map(x, edge.y);
+    at.disparity_px = at.own_px = map(x, edge.y);
+    const float nearer = sampling == EdgeSampling::foreground ? foreground(near) : at.own_px;
+    if (nearer > at.own_px) at.disparity_px = nearer;
   }
   at.confidence = 1;
   return at;

@@ -44,6 +44,7 @@ struct VerticalField {
            coefficients_px[2] * (y - 0.5 * (height_px - 1)) / height_px;
   }
   double largest_px() const;  ///< maximum |dy| over the image
+  double rms_px() const;      ///< of dy over the image
 };
 
 /// Estimates the field of a pair from matched corners:

@@ -196,6 +196,12 @@ double VerticalField::largest_px() const {
   return largest;
 }
 
+double VerticalField::rms_px() const {
+  const double width = width_px, height = height_px;  // of whole pixels: (w^2 - 1) / (12 w^2)
+  const double by_x = (1 - 1 / (width * width)) / 12, by_y = (1 - 1 / (height * height)) / 12;
+  return std::sqrt(coefficients_px.cwiseAbs2().dot(Eigen::Vector3d(1, by_x, by_y)));
+}
+
 VerticalField fit_vertical_field(const std::vector<VerticalOffset>& offsets,
                                  int corners,
                                  const Eigen::Vector2i& size_px,

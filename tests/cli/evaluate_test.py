@@ -9,6 +9,7 @@ import json
 import pathlib
 import random
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -109,6 +110,89 @@ class Evaluate(unittest.TestCase):
         self.assertGreater(score['mismatch'], 0.1)  # the box
         self.assertLess(score['mismatch'], 0.5)
 
+    def score_of(self, command, *more, truth=('--truth', 'truth.pgm', '--truth-scale', '4'), code=0):
+        """Of a program that writes bytes of a PFM file; the standard error with it."""
+        done = subprocess.run([PROGRAM, 'evaluate', '--left', 'left.pgm', '--right', 'right.pgm', *truth,
+                               '--max-disparity', '24', '--matcher', 'none', '--command',
+                               f'o={command} {{output}} {{left}} {{right}}', '--json', *more],
+                              cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout)['matchers']['o'], done.stderr
+
+    def write_pfm(self, file, values):
+        (self.folder / file).write_bytes(b'Pf\n%d %d\n-1\n' % (WIDTH, HEIGHT) + b''.join(
+            struct.pack(f'<{WIDTH}f', *row) for row in reversed(values)))
+
+    def copier(self, name, values):
+        """A program that writes these disparities."""
+        self.write_pfm(f'{name}.pfm', values)
+        (self.folder / name).write_text(f'#!/bin/sh\ncp {self.folder}/{name}.pfm "$1"\n')
+        (self.folder / name).chmod(0o755)
+        return f'{self.folder}/{name}'
+
+    def test_specks_of_a_map_count_as_they_are(self):
+        draw = random.Random(8)
+        truth = [[d / 4 for d in row] for row in pair()[2]]
+        exact, _ = self.score_of(self.copier('exact', truth))
+        self.assertEqual((exact['bad_0_5'], exact['mismatch']), (0, 0))
+        for share, off in ((0.3, -4), (0.02, 8), (0.1, 8)):
+            specks = [[d + off if draw.random() < share else d for d in row] for row in truth]
+            found, _ = self.score_of(self.copier('specks', specks))
+            # 5 standard deviations of a share of 3,000 edges; at discontinuities either surface counts
+            self.assertAlmostEqual(found['bad_1_smooth'], share, delta=5 * (share * (1 - share) / 3000) ** 0.5)
+
+    def test_truth_of_separate_points(self):
+        draw = random.Random(9)
+        truth = [[d / 4 for d in row] for row in pair()[2]]
+        points = [[d if draw.random() < 0.3 else float('inf') for d in row] for row in truth]
+        self.write_pfm('points.pfm', points)
+        given = ('--truth', 'points.pfm')
+        exact, _ = self.score_of(self.copier('exact', truth), truth=given)
+        self.assertEqual((exact['bad_0_5'], exact['mismatch'], exact['density']), (0, 0, 1))
+        moved, _ = self.score_of(self.copier('moved', [[d + 0.3 for d in row] for row in truth]), truth=given)
+        self.assertAlmostEqual(moved['bias_inlier_px'], 0.3, delta=1e-3)
+        wrong, _ = self.score_of(self.copier('wrong', [[d + 5 for d in row] for row in truth]), truth=given,
+                                 code=3)
+        self.assertEqual((wrong['rms_inlier_px'], wrong['bias_inlier_px'], wrong['bad_1_smooth']), (None, None, 1))
+
+    def test_values_of_a_truth_that_mean_unknown(self):
+        truth = [[d / 4 for d in row] for row in pair()[2]]
+        exact = self.copier('exact', truth)
+        for value in (0, -1):
+            self.write_pfm('holes.pfm', [[value if x < 40 else d for x, d in enumerate(row)] for row in truth])
+            doubted, said = self.score_of(exact, truth=('--truth', 'holes.pfm'), code=3)
+            self.assertIn(f'20 % of the ground truth is exactly {value}', said)
+            self.assertGreater(doubted['bad_1'], 0.1)
+            known, said = self.score_of(exact, truth=('--truth', 'holes.pfm', '--truth-unknown', str(value)))
+            self.assertEqual((known['bad_1'], said.count('exactly')), (0, 0))
+            _, said = self.score_of(exact, truth=('--truth', 'holes.pfm', '--truth-unknown', 'none'))
+            self.assertNotIn('exactly', said)
+        scale = [[256 * d for d in row] for row in truth]
+        self.write_pfm('scaled.pfm', scale)
+        _, said = self.score_of(exact, truth=('--truth', 'scaled.pfm'), code=3)
+        self.assertIn('give --truth-scale 256', said)
+
+    def test_equal_density_of_a_matcher_without_errors(self):
+        truth = [[d / 4 for d in row] for row in pair()[2]]
+        exact = self.copier('exact', truth)
+        noisy = pair()[2]
+        for row in noisy[50:80]:
+            row[100:130] = [24] * 30  # the ground truth of one scene
+        write_pgm(self.folder / 'noisy.pgm', noisy)
+        (self.folder / 'three.toml').write_text('\n'.join(
+            f'[[pair]]\nname = "{i}"\nleft = "left.pgm"\nright = "right.pgm"\ntruth = "{name}.pgm"\n'
+            'truth_scale = 4\nmax_disparity = 24' for i, name in enumerate(('noisy', 'truth', 'truth'))))
+        for json_too in ((), ('--json',)):
+            done = subprocess.run([PROGRAM, 'evaluate', '--scenes', 'three.toml', '--matcher', 'edge', '--command',
+                                   f'o={exact} {{output}} {{left}} {{right}}', '--equal-density', *json_too],
+                                  cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        against = json.loads(done.stdout)['equal_density']['against']['o']
+        self.assertGreater(against['ratio'], 0)
+        low, high = against['ratio_interval_95']
+        self.assertGreaterEqual(low, 0)
+        self.assertIsNone(high)  # a resample without the scene in which it errs
+
     def doubts(self, *more, of, **files):
         done = self.run_it('-q', '--json', *more, **files)
         self.assertEqual(done.returncode, 3, done.stderr)
@@ -122,6 +206,12 @@ class Evaluate(unittest.TestCase):
         self.doubts(of='check that the ground truth belongs to this left image', truth='twice')
         self.doubts(of='outside the search range', most=4)
         self.doubts(of='are not aligned', right='other')
+
+    def test_rows_of_another_height_are_doubted(self):
+        right = pair()[1]
+        write_pgm(self.folder / 'lower.pgm', right[:1] * 2 + right[:HEIGHT - 2])
+        self.doubts(of='left: the rows are misaligned by', right='lower')
+        self.assertEqual(self.run_it('-q', '--repair', right='lower').returncode, 0)
 
     def test_programs_have_names_and_places(self):
         (self.folder / 'even.py').write_text(

@@ -116,7 +116,12 @@ class Rectify(CalibratedCase):
 
     def test_repair(self):
         rig = self.lowered_rig(2)
-        found = json.loads(self.works(*self.arguments(rig=rig), '--json').stdout)['vertical_field']
+        done = cli_test.vernier(*self.arguments(rig=rig), '--json', '-q')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('the rows are misaligned by 2.', done.stderr)
+        said = json.loads(done.stdout)
+        self.assertIn('the rows are misaligned', said['doubts'][0])
+        found = said['vertical_field']
         self.assertTrue(found['significant'])
         self.assertFalse(found['repaired'])
         mean, _ = self.row_offset()

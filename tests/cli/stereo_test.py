@@ -142,6 +142,26 @@ class Made(Case):
         self.assertAlmostEqual(float(again['z1_m']), float(s['z1_m']), 6)
         self.assertIn(s['z1_m'], first)
 
+    def test_an_offset_is_part_of_the_range(self):
+        """The right image is moved by eight columns: disparities of -2 and 6."""
+        right = pair()[1]
+        write_pgm(self.images / 'cut.pgm', [[0] * 8 + row[:-8] for row in right])
+        words = (*self.arguments(right='cut', most=16), '-q', '--json')
+        done = self.works(*words, *self.values(), '--offset-px', 8)
+        said = json.loads(done.stdout)
+        self.assertEqual(said['min_disparity_px'], -8)
+        self.assertGreater(said['density'], 0.8)
+
+    def test_rows_of_another_height_are_doubted(self):
+        right = pair()[1]
+        for rows, code in ((0, 0), (1, 3), (3, 3)):
+            write_pgm(self.images / 'lower.pgm', right[:1] * rows + right[:HEIGHT - rows])
+            done = cli_test.vernier(*self.arguments(right='lower'), '-q', '--json')
+            self.assertEqual(done.returncode, code, done.stderr)
+            if code == 3:
+                self.assertIn('the rows are misaligned by', done.stderr)
+        self.works(*self.arguments(right='lower'), '-q', '--repair')
+
     def test_both_parts_of_the_covariance(self):
         done = self.works(*self.arguments(), '--rig', self.images / 'rig.json', '--json')
         said = json.loads(done.stdout)

@@ -90,8 +90,8 @@ function density_section(evaluation) {
     { head: "Bad 1", small: own, cell: ([, e]) => percent(e.bad_1, 2) },
     { head: "Bad 1", small: "other matcher", cell: ([, e]) => percent(e.peer_bad_1, 2) },
     { head: "Ratio", small: "95 % over pairs", cell: ([, e]) => [significant(e.ratio),
-      is_number(e.ratio_interval_95[0]) && small(`${significant(e.ratio_interval_95[0])} to `
-        + significant(e.ratio_interval_95[1]))] },
+      is_number(e.ratio_interval_95[0]) && small(significant(e.ratio_interval_95[0])
+        + (is_number(e.ratio_interval_95[1]) ? ` to ${significant(e.ratio_interval_95[1])}` : " or more"))] },
   ], against, { wide: false }));
 }
 

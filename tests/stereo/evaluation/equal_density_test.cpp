@@ -62,6 +62,23 @@ TEST(EqualDensity, AnIntervalHoldsTheRatioAndIsThatOfResampledScenes) {
   EXPECT_NEAR(e.interval.high - e.ratio, half, 0.2 * half);
 }
 
+// Three scenes widen an interval by 2.7, of which one to both sides of the ratio would be negative.
+TEST(EqualDensity, AnIntervalIsNotBelowZero) {
+  const auto scene = [](double own, double peer) {
+    return DensityCurves{curve({{0.9, own}}), {curve({{0.9, peer}})}};
+  };
+  const EqualDensity e =
+      at_equal_density({scene(0.001, 0.02), scene(0.02, 0.03), scene(0.004, 0.02)});
+  EXPECT_GT(e.interval.low, 0);
+  EXPECT_LT(e.interval.low, e.ratio);
+  EXPECT_GT(e.interval.high, e.ratio);
+  // The other way round it is the reciprocal.
+  const EqualDensity other =
+      at_equal_density({scene(0.02, 0.001), scene(0.03, 0.02), scene(0.02, 0.004)});
+  EXPECT_NEAR(other.interval.low * e.interval.high, 1, 1e-9);
+  EXPECT_NEAR(other.interval.high * e.interval.low, 1, 1e-9);
+}
+
 TEST(EqualDensity, APeerWithoutErrorsIsTheBest) {
   const DensityCurves scene{curve({{0.9, 0.02}}), {curve({{0.9, 0.04}}), curve({{0.9, 0}})}};
   const EqualDensity e = at_equal_density({scene});

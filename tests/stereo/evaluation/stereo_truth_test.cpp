@@ -191,6 +191,29 @@ TEST(TruthAtEdge, IsTheForegroundsAtAStep) {
   EXPECT_FALSE(truth_of(truth, 9, 4).occluded);
 }
 
+/// Separate points of two planes, as a laser scanner gives them.
+TEST(TruthAtEdge, OfSeparatePointsHasDiscontinuitiesAtStepsOnly) {
+  DisparityMap map{120, 40, std::vector<float>(120 * 40, unknown)};
+  for (int y = 0; y < 40; ++y) {
+    for (int x = (y * 7) % 3; x < 120; x += 3) {
+      map.values[static_cast<std::size_t>(y * 120 + x)] = x < 60 ? 8 : 20;
+    }
+  }
+  const StereoTruth truth = stereo_truth(map);
+  EXPECT_TRUE(truth.sparse);
+  int smooth = 0;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 25; x < 116; ++x) {
+      const TruthAtEdge at = truth_of(truth, static_cast<float>(x), y);
+      EXPECT_EQ(at.known, map.known(x, y));
+      if (x < 57 || x > 62) EXPECT_FALSE(at.discontinuity) << x << " " << y;
+      if (x == 59 || x == 60) EXPECT_TRUE(at.discontinuity) << x << " " << y;
+      smooth += at.known && !at.discontinuity;
+    }
+  }
+  EXPECT_GT(smooth, 1000);
+}
+
 TEST(TruthAtEdge, KnowsWhereNothingIsKnown) {
   DisparityMap map{50, 9, std::vector<float>(50 * 9, 8)};
   const auto set = [&](int x, float d) {

@@ -256,11 +256,27 @@ TEST(SampleAtEdges, InterpolatesAlongTheRowAndTakesTheForegroundAtAStep) {
   EXPECT_FALSE(at[2].matched());
   EXPECT_EQ(at[2].confidence, 0);
   EXPECT_EQ(at[3].disparity_px, 40);
+  EXPECT_EQ(at[1].own_px, 14.5f);
   EXPECT_EQ(sample_at_edges(map, edges, EdgeSampling::nearest)[1].disparity_px, 14.5f);
   EXPECT_NE(test::error_message([&] {
               sample_at_edges(map, {test::edge_at(60, 4)});
             }).find("disparity map: has 60x9 pixels, but an edge is at (60, 4)"),
             std::string::npos);
+}
+
+// A surface has more than one pixel: the speck is itself at its own edge and nothing to the edges
+// around it.
+TEST(SampleAtEdges, TakesNoSpeckForAForeground) {
+  DisparityMap map{60, 9, std::vector<float>(60 * 9, 10)};
+  map.values[4 * 60 + 30] = 25;
+  const auto at = sample_at_edges(map, {test::edge_at(29, 4), test::edge_at(31, 4),
+                                        test::edge_at(30, 3), test::edge_at(30, 4)});
+  for (const int beside : {0, 1, 2}) EXPECT_EQ(at[beside].disparity_px, 10) << beside;
+  EXPECT_EQ(at[3].disparity_px, 25);
+  map.values[4 * 60 + 30] = 2;
+  const auto low = sample_at_edges(map, {test::edge_at(30, 4)})[0];
+  EXPECT_EQ(low.disparity_px, 10);
+  EXPECT_EQ(low.own_px, 2);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <system_error>
@@ -163,11 +164,29 @@ DisparityMap read_output(const fs::path& file,
   }
 }
 
+/// Sets disparities above the range to unknown.
+MapRange cut_above(DisparityMap& map, const DisparityRange& range) {
+  MapRange counted;
+  for (float& d : map.values) {
+    if (!(d == d)) continue;
+    const bool above = !(d < static_cast<float>(range.max_px) + 0.5F);
+    if (above) d = std::numeric_limits<float>::quiet_NaN();
+    ++(above ? counted.above : counted.within);
+  }
+  return counted;
+}
+
 DisparityMap run(const Command& command,
                  const RectifiedPair& pair,
                  const DisparityRange& range,
                  const ExternalMatcherOptions& options) {
   check_matcher_input(pair, range, command.place);
+  if (range.min_px < 0 && command.output == "output.png") {
+    throw Error(command.place,
+                fmt::format("a PNG cannot hold the disparities below 0 of a range from {} px",
+                            range.min_px),
+                "use {output} or {output.npy}");
+  }
   const TemporaryFolder folder;
   write_image(folder, "left.png", pair.left);
   write_image(folder, "right.png", pair.right);
@@ -180,6 +199,8 @@ DisparityMap run(const Command& command,
                             pair.left.width_px, pair.left.height_px),
                 "make it write one disparity per pixel of the left image");
   }
+  const MapRange counted = cut_above(map, range);
+  if (options.told) options.told(counted);
   return map;
 }
 

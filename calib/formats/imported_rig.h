@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,8 @@ struct ImportOptions {
   std::optional<CameraModel> model = {};  ///< default: the smallest that represents it exactly
   std::optional<Eigen::Vector2i> size_px = {};  ///< of every camera, if the file has no size
   double unit_m = 1;                            ///< the file's unit of length, metres
+  /// The size of a camera's images, asked where an OpenCV file has none and size_px is not given.
+  std::function<Eigen::Vector2i(std::size_t camera)> size_of_images = {};
 };
 
 /// A rig imported from another tool's files.

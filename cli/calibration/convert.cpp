@@ -27,9 +27,6 @@
 namespace vernier::cli {
 namespace {
 
-/// A larger distance from the first camera suggests a file in millimetres.
-constexpr double far_m = 10;
-
 using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>;
 
 struct ConvertArguments {
@@ -139,15 +136,7 @@ void report_notes(const ReadRig& read,
                   const std::vector<std::string>& losses,
                   const Session& session) {
   for (const std::string& note : read.notes) session.info(note);
-  const Rig& rig = read.estimate.rig;
-  for (std::size_t i = 0; from != RigFormat::vernier && i < rig.cameras.size(); ++i) {
-    const double distance_m = rig.T_camera_first[i].t.norm();
-    if (distance_m < far_m) continue;
-    session.warn(
-        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, add "
-                    "--unit-m 0.001",
-                    rig.cameras[i].name, distance_m));
-  }
+  warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);
 }
 

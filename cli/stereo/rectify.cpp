@@ -133,6 +133,10 @@ void check_alignment(const Rectified& rectified,
       session.warn(words);
     }
   }
+  if (field.misaligned && !field.unrectified && !options.repair) {
+    session.add_trust_warning(misalignment(field) +
+                              "--repair corrects this, a calibration of today its cause");
+  }
   if (!field.unrectified) return;
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
     const VerticalField exchanged = rectify(rig, rectified.geometry, right, left, options).field;
@@ -250,7 +254,7 @@ void run(RectifyArguments options, Session& session) {
     }
     options.geometry.size_px = {width, height};
   }
-  const ReadRig file = read_named_rig(options.rig, session, options.left);
+  const ReadRig file = read_named_rig(options.rig, session, {options.left, options.right});
   std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
   inputs.insert(inputs.end(), {options.left, options.right});
   const Rig& rig = file.estimate.rig;

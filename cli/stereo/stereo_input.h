@@ -20,8 +20,8 @@ struct StereoInputOptions {
   std::string left, right, rig, centre_px;
   bool rectified = false, repair = false;
   double f_px = 0, baseline_m = 0, offset_px = 0;
-  std::optional<int> max_disparity_px;
-  int min_disparity_px = 0, threads = 0;
+  std::optional<int> min_disparity_px, max_disparity_px;
+  int threads = 0;
 };
 
 /// A rectified pair with information on its cameras.

@@ -116,8 +116,12 @@ class Rectify(CalibratedCase):
 
     def test_repair(self):
         rig = self.lowered_rig(2)
-        found = json.loads(self.works(*self.arguments(rig=rig), '--json').stdout)['vertical_field']
-        self.assertTrue(found['significant'])
+        done = cli_test.vernier(*self.arguments(rig=rig), '--json', '-q')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('the rows of the two images are misaligned by 2.', done.stderr)
+        found = json.loads(done.stdout)['vertical_field']
+        self.assertTrue(found['significant'] and found['misaligned'])
+        self.assertFalse(found['unrectified'])
         self.assertFalse(found['repaired'])
         mean, _ = self.row_offset()
         self.assertLess(abs(mean - 1.9), 0.3)  # 2 px of the raw image

@@ -135,7 +135,8 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
 void repair_rows(bool wanted, StereoInput& input, Session& session) {
   const VerticalField& field = input.field;
   if (field.unrectified) return;
-  if (wanted || field.significant) session.info(describe(field));
+  if (!field.known) session.warn("row alignment could not be checked: " + describe(field));
+  if (field.known && (wanted || field.significant)) session.info(describe(field));
   if (!field.significant) return;
   if (wanted) {
     input.pair.right = corrected_right(input.pair.right, field);

@@ -273,6 +273,12 @@ class Made(Case):
         self.assertIn('is 100 m from the first; if the file is in millimetres, convert it',
                       done.stderr)
 
+    def test_rows_that_cannot_be_checked_are_told(self):
+        for name, rows in zip(('left', 'right'), pair()):
+            write_pgm(self.images / f'{name}_strip.pgm', rows[40:80])
+        done = cli_test.vernier(*self.arguments(left='left_strip', right='right_strip'))
+        self.assertIn('warning: row alignment could not be checked: too few corners', done.stderr)
+
     def test_a_principal_point_outside_is_told(self):
         done = self.works(*self.arguments(), *self.values()[:4], '--centre-px', '9999,5')
         self.assertIn('--centre-px 9999,5: outside the image of 200x120 px', done.stderr)

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,9 +22,9 @@ class YamlNode;
 struct ImportOptions {
   std::optional<CameraModel> model = {};  ///< default: the smallest that represents it exactly
   std::optional<Eigen::Vector2i> size_px = {};  ///< of every camera, if the file has no size
-  /// Of an image of the rig: the size of cameras of which neither the file nor `size_px` gives it.
-  std::optional<Eigen::Vector2i> image_size_px = {};
-  double unit_m = 1;  ///< the file's unit of length, metres
+  double unit_m = 1;                            ///< the file's unit of length, metres
+  /// The size of a camera's images, asked where an OpenCV file has none and size_px is not given.
+  std::function<Eigen::Vector2i(std::size_t camera)> size_of_images = {};
 };
 
 /// A rig imported from another tool's files.

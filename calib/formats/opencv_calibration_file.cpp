@@ -100,9 +100,9 @@ Eigen::Vector2i image_size(const Keys& keys,
                            const std::string& place) {
   const std::optional<Eigen::Vector2i> stated = stated_size(keys, i);
   if (!stated && !options.size_px) {
-    if (options.image_size_px) return *options.image_size_px;
+    if (options.size_of_images) return options.size_of_images(i == 0 ? 0 : i - 1);
     throw Error(place, "the file does not give the image size",
-                "give it (convert --size WxH, or image_width and image_height in the file)");
+                "add image_width and image_height to it, or give convert's option --size");
   }
   if (stated && options.size_px && *stated != *options.size_px) {
     throw Error(place,

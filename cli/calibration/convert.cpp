@@ -136,7 +136,7 @@ void report_notes(const ReadRig& read,
                   const std::vector<std::string>& losses,
                   const Session& session) {
   for (const std::string& note : read.notes) session.info(note);
-  if (from != RigFormat::vernier) warn_of_far_cameras(read.estimate.rig, "add", session);
+  warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);
 }
 

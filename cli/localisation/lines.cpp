@@ -62,7 +62,7 @@ Eigen::Matrix3d turn_of(const LinesArguments& o) {
 }
 
 Camera camera_of(const LinesArguments& options, const std::string& image, Session& session) {
-  const ReadRig read = read_named_rig(options.rig, session, image);
+  const ReadRig read = read_named_rig(options.rig, session, {image});
   if (read.estimate.rig.cameras.size() > 1) {
     session.info(fmt::format("{}: its first camera, \"{}\", is taken", options.rig,
                              read.estimate.rig.cameras[0].name));

@@ -86,7 +86,8 @@ OdometryDrive drive_of_images(const OdometryOptions& options, Session& session) 
   if (files.size() < 2) {
     throw Error("--left", "one pair of images has no motion", "give two pairs or more");
   }
-  const ReadRig read = read_stereo_rig(options.rig, session, files.front().left.string());
+  const ReadRig read = read_stereo_rig(options.rig, session,
+                                       {files.front().left.string(), files.front().right.string()});
   const RigEstimate& rig = read.estimate;
   OdometryDrive drive{rig.rig, covariance_of(rig), {}, {}};
   if (!options.truth.empty()) {

@@ -45,7 +45,9 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
 NamedViews views_of_images(const ViewOptions& options, Session& session) {
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
   const RigEstimate estimate =
-      read_stereo_rig(options.rig, session, files.front().left.string()).estimate;
+      read_stereo_rig(options.rig, session,
+                      {files.front().left.string(), files.front().right.string()})
+          .estimate;
   const auto rig = std::make_shared<const Rig>(estimate.rig);
   std::map<std::string, Pose2D> poses;
   if (!options.poses.empty()) poses = read_place_poses(options.poses);

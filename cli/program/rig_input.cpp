@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <sstream>
@@ -224,31 +225,34 @@ std::vector<fs::path> files_read(RigFormat format, std::vector<fs::path> inputs)
   return inputs;
 }
 
-void warn_of_far_cameras(const Rig& rig, const std::string& do_what, const Session& session) {
+void warn_of_millimetres(RigFormat format,
+                         const Rig& rig,
+                         const std::string& remedy,
+                         const Session& session) {
   constexpr double far_m = 10;
-  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+  for (std::size_t i = 0; format != RigFormat::vernier && i < rig.cameras.size(); ++i) {
     const double distance_m = rig.T_camera_first[i].t.norm();
     if (distance_m < far_m) continue;
     session.warn(
-        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, {} "
-                    "--unit-m 0.001",
-                    rig.cameras[i].name, distance_m, do_what));
+        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, {}",
+                    rig.cameras[i].name, distance_m, remedy));
   }
 }
 
-ReadRig read_named_rig(const std::string& named, Session& session, const std::string& image) {
+ReadRig read_named_rig(const std::string& named,
+                       Session& session,
+                       const std::vector<std::string>& images) {
   const std::vector<fs::path> files = named_files(named);
   const RigFormat format = named_format(files);
   ImportOptions options;
-  if ((format == RigFormat::kitti || format == RigFormat::opencv) && !image.empty()) {
-    const GreyLevels size_of = read_grey_levels(image);
-    const Eigen::Vector2i size_px(size_of.width_px, size_of.height_px);
-    (format == RigFormat::kitti ? options.size_px : options.image_size_px) = size_px;
+  if (!images.empty() && !images.front().empty()) {
+    options.size_of_images = [&images](std::size_t camera) {
+      const GreyLevels image = read_grey_levels(images[std::min(camera, images.size() - 1)]);
+      return Eigen::Vector2i(image.width_px, image.height_px);
+    };
+    if (format == RigFormat::kitti) options.size_px = options.size_of_images(0);
   }
   ReadRig read = read_rig_as(format, files, options);
-  if (format != RigFormat::vernier) {
-    warn_of_far_cameras(read.estimate.rig, "write a rig.json by vernier convert", session);
-  }
   for (const std::string& note : read.notes) {
     if (format == RigFormat::vernier) {
       session.warn(note);
@@ -256,11 +260,15 @@ ReadRig read_named_rig(const std::string& named, Session& session, const std::st
       session.info(note);
     }
   }
+  warn_of_millimetres(format, read.estimate.rig,
+                      "convert it to a rig.json: vernier convert --unit-m 0.001", session);
   return read;
 }
 
-ReadRig read_stereo_rig(const std::string& name, Session& session, const std::string& image) {
-  ReadRig read = read_named_rig(name, session, image);
+ReadRig read_stereo_rig(const std::string& name,
+                        Session& session,
+                        const std::vector<std::string>& images) {
+  ReadRig read = read_named_rig(name, session, images);
   if (read.estimate.rig.cameras.size() != 2) {
     throw Error(name, fmt::format("has {} cameras, not two", read.estimate.rig.cameras.size()),
                 "give a stereo rig; convert --cameras makes one of several cameras");

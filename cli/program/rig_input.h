@@ -44,18 +44,25 @@ ReadRig read_rig_as(RigFormat format,
                     const std::vector<std::filesystem::path>& inputs,
                     const ImportOptions& options);
 
-/// Warns of cameras that are so far from the first that the file may be in millimetres, and says to
-/// "add" --unit-m 0.001, or in other words to `do_what` with it.
-void warn_of_far_cameras(const Rig& rig, const std::string& do_what, const Session& session);
-
 /// A rig by what an option `--rig` names: a rig.json, a shipped name, a file or folder of another
 /// tool, or several files of one, left first, separated by commas. Warnings and notes go to the
-/// session. `image` is a file whose size is that of all cameras where the format does not state
-/// one; empty: none. Throws Error naming the file.
-ReadRig read_named_rig(const std::string& name, Session& session, const std::string& image = "");
+/// session. `images` are one of each camera, left first, or one of all: their sizes are the
+/// cameras' where the file does not state any; empty names: none. Throws Error naming the file.
+ReadRig read_named_rig(const std::string& name,
+                       Session& session,
+                       const std::vector<std::string>& images = {});
 
 /// The same; throws Error also unless the rig has two cameras.
-ReadRig read_stereo_rig(const std::string& name, Session& session, const std::string& image = "");
+ReadRig read_stereo_rig(const std::string& name,
+                        Session& session,
+                        const std::vector<std::string>& images = {});
+
+/// Warns of cameras so far apart that the file is probably in millimetres; `remedy` is what to do
+/// then. A rig.json is in metres.
+void warn_of_millimetres(RigFormat format,
+                         const Rig& rig,
+                         const std::string& remedy,
+                         const Session& session);
 
 /// The files that read_named_rig() reads, which no output may overwrite.
 std::vector<std::filesystem::path> files_of_named_rig(const std::string& name);

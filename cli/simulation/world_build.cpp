@@ -59,7 +59,7 @@ std::vector<Patch> patches_of(const BuildArguments& options,
                               Session& session) {
   const std::vector<std::filesystem::path> maps =
       depth_maps_of_images(seen.images, files, "--depth " + options.depth);
-  const ReadRig rig = read_named_rig(options.input.rig, session, maps.front().string());
+  const ReadRig rig = read_named_rig(options.input.rig, session, {maps.front().string()});
   DepthCloud cloud(options.cloud);
   Progress progress(session, "depth maps");
   for (std::size_t i = 0; i < maps.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -21,6 +22,7 @@
 #include "stereo/evaluation/pair_samples.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/matcher.h"
+#include "stereo/matching/external_matcher.h"
 
 namespace vernier::cli {
 namespace {
@@ -95,7 +97,13 @@ void run(const CharacteriseArguments& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   if (!options.output.empty())
     check_output_is_not_input(inputs_of(options.scenes, files), options.output);
-  const Matcher matcher = single_matcher(options.matcher);
+  MapRange map;
+  MatcherOptions told = options.matcher;
+  told.told = [&map](const MapRange& range) {
+    map.within += range.within;
+    map.above += range.above;
+  };
+  const Matcher matcher = single_matcher(told);
   const ShiftMode mode =
       options.lateral_shift == "common" ? ShiftMode::common : ShiftMode::independent;
   std::vector<PairSamples> samples;
@@ -110,6 +118,11 @@ void run(const CharacteriseArguments& options, Session& session) {
   measuring.bootstrap.seed = options.seed;
   const MeasuredSources sources = measure_sources(samples, measuring);
   const bool trusted = report_limitations(sources, session);
+  int most_px = 0;
+  for (const StereoSceneFile& file : files) most_px = std::max(most_px, file.range.max_px);
+  if (const std::string doubt = doubt_about(map, most_px); !doubt.empty()) {
+    session.add_trust_warning(doubt);
+  }
   if (!options.output.empty()) {
     if (trusted)
       write_atomically(options.output, sources_toml(sources, mode, how_measured(options, matcher)));

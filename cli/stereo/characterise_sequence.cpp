@@ -195,7 +195,7 @@ void characterise_sequence(const SequenceArguments& options,
     maps = depth_maps_of_images(images, files, "--depth " + options.depth);
   }
   check_output(options, {}, output);
-  const ReadRig rig = read_named_rig(options.rig, session, maps.empty() ? "" : maps[0].string());
+  const ReadRig rig = read_named_rig(options.rig, session, {maps.empty() ? "" : maps[0].string()});
   const Camera& camera = rig.estimate.rig.cameras.at(0);
   DepthOfView depth;
   if (!maps.empty()) {

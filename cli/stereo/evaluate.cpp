@@ -28,6 +28,7 @@
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/matching/external_matcher.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
@@ -255,7 +256,13 @@ void check_plausibility(const Scene& scene, const std::vector<Run>& runs, Sessio
 void run(const EvaluateArguments& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   check_outputs(options, files);
-  const std::vector<Matcher> matchers = matchers_named(options.matchers);
+  MapRange map;  // of programs
+  MatcherOptions told = options.matchers;
+  told.told = [&map](const MapRange& range) {
+    map.within += range.within;
+    map.above += range.above;
+  };
+  const std::vector<Matcher> matchers = matchers_named(told);
   if (options.equal_density && matchers.size() < 2) {
     throw Error("--equal-density", "needs at least two matchers", "add another one to --matcher");
   }
@@ -270,7 +277,11 @@ void run(const EvaluateArguments& options, Session& session) {
   Outputs outputs;
   for (const StereoSceneFile& file : files) {
     const Scene scene = read_scene(file, options.repair, session);
+    map = {};
     const std::vector<Run> runs = run_scene(scene, matchers, how, report);
+    if (const std::string doubt = doubt_about(map, file.range.max_px); !doubt.empty()) {
+      session.add_trust_warning(file.name + ": " + doubt);
+    }
     add_outputs(options, static_cast<std::size_t>(done), scene, runs[0], how.outline,
                 report.scenes.back(), outputs);
     check_plausibility(scene, runs, session);

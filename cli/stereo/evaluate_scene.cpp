@@ -13,8 +13,8 @@
 #include "calib/error.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/session.h"
-#include "cli/stereo/row_doubt.h"
 #include "cli/stereo/swapped_pair.h"
+#include "cli/stereo/vertical_field_json.h"
 #include "stereo/canny_edges.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
@@ -54,7 +54,8 @@ void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
       fmt::format(
           "left and right appear to be swapped: {} corners match as given, {} after swapping",
           field.matched, other.matched),
-      "swap --left and --right; if disparities are negative, give --min-disparity");
+      "swap --left and --right; or, if the right principal point is further to the right than the "
+      "left one, give a smaller --min-disparity");
 }
 
 void repair(Scene& scene, bool wanted, Session& session) {
@@ -67,8 +68,9 @@ void repair(Scene& scene, bool wanted, Session& session) {
         scene.file.name + ": the rows are not aligned; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
     scene.pair.right = corrected_right(scene.pair.right, field);
-  } else if (const std::string doubt = row_doubt(field); !doubt.empty()) {
-    session.add_trust_warning(scene.file.name + ": " + doubt);
+  } else if (field.misaligned) {
+    session.add_trust_warning(scene.file.name + ": " + misalignment(field) +
+                              "--repair corrects this");
   } else if (field.significant) {
     session.warn(scene.file.name + ": the rows are slightly misaligned; --repair corrects this");
   }

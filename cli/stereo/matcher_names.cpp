@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/matcher_names.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <optional>
 #include <sstream>
-#include <utility>
 
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
@@ -21,16 +22,17 @@
 namespace vernier::cli {
 namespace {
 
-std::optional<Matcher> built_in(const std::string& name) {
+constexpr std::array built_in{"edge", "stretch", "bm", "sgbm"};
+
+bool is_built_in(const std::string& name) {
+  return name == "none" || std::find(built_in.begin(), built_in.end(), name) != built_in.end();
+}
+
+Matcher matcher_named(const std::string& name) {
   if (name == "edge") return edge_matcher();
   if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
-  return std::nullopt;
-}
-
-Matcher matcher_named(const std::string& name) {
-  if (std::optional<Matcher> matcher = built_in(name)) return *std::move(matcher);
   throw Error("--matcher", "unknown matcher " + in_quotes(name),
               "supported: edge, stretch, bm, sgbm, or a name defined by --command NAME=…");
 }
@@ -43,20 +45,22 @@ bool is_named(const std::vector<Matcher>& matchers, const std::string& name) {
 /// Parses "NAME=command" or a command, which is then named after its program and numbered if
 /// necessary.
 Matcher command_matcher(const std::string& text,
-                        double time_limit_s,
+                        const MatcherOptions& options,
                         const std::vector<Matcher>& others) {
   const std::size_t end =
       text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.");
   const bool named = end != std::string::npos && end > 0 && text[end] == '=';
-  Matcher matcher =
-      external_matcher(named ? text.substr(end + 1) : text, {.time_limit_s = time_limit_s});
+  Matcher matcher = external_matcher(named ? text.substr(end + 1) : text,
+                                     {.time_limit_s = options.time_limit_s, .told = options.told});
   if (named) matcher.name = text.substr(0, end);
-  if (named && built_in(matcher.name)) {
-    throw Error("--command", in_quotes(matcher.name) + " is the name of a matcher of this program",
-                "give the command another name");
+  if (named && is_built_in(matcher.name)) {
+    throw Error("--command",
+                in_quotes(matcher.name) +
+                    (matcher.name == "none" ? " stands for no matcher" : " is a built-in matcher"),
+                "give the program another name");
   }
   const std::string base = matcher.name;
-  for (int k = 2; !named && is_named(others, matcher.name); ++k) {
+  for (int k = 2; !named && (is_named(others, matcher.name) || is_built_in(matcher.name)); ++k) {
     matcher.name = base + "-" + std::to_string(k);
   }
   return matcher;
@@ -73,7 +77,7 @@ std::vector<Matcher> matchers_named(const MatcherOptions& options) {
     to.push_back(matcher);
   };
   for (const std::string& command : options.commands) {
-    add(programs, command_matcher(command, options.time_limit_s, programs));
+    add(programs, command_matcher(command, options, programs));
   }
   std::istringstream stream(options.names);
   for (std::string name; std::getline(stream, name, ',');) {
@@ -96,6 +100,16 @@ Matcher single_matcher(const MatcherOptions& options) {
   const std::vector<Matcher> matchers = matchers_named(one);
   if (matchers.size() == 1) return matchers.front();
   throw Error("--matcher", "more than one matcher given", "give one of edge, stretch, bm and sgbm");
+}
+
+std::string doubt_about(const MapRange& map, int most_px) {
+  constexpr double much = 0.1;
+  if (map.share_above() < much) return "";
+  return fmt::format(
+      "{:.0f} % of the program's disparities are above the {} px asked for and are taken as "
+      "unknown: the scale of its map may be wrong (pixels, or 256 per pixel in a 16-bit PNG), or "
+      "--max-disparity too small",
+      100 * map.share_above(), most_px);
 }
 
 CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options) {

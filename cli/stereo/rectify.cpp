@@ -24,7 +24,6 @@
 #include "cli/program/picture.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/stereo/row_doubt.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -134,10 +133,9 @@ void check_alignment(const Rectified& rectified,
       session.warn(words);
     }
   }
-  if (const std::string doubt = row_doubt(field); !options.repair && !doubt.empty()) {
-    session.add_trust_warning(doubt +
-                              "; check that the rig matches the current cameras and that "
-                              "the images are simultaneous");
+  if (field.misaligned && !field.unrectified && !options.repair) {
+    session.add_trust_warning(misalignment(field) +
+                              "--repair corrects this, a calibration of today its cause");
   }
   if (!field.unrectified) return;
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
@@ -256,7 +254,7 @@ void run(RectifyArguments options, Session& session) {
     }
     options.geometry.size_px = {width, height};
   }
-  const ReadRig file = read_named_rig(options.rig, session, options.left);
+  const ReadRig file = read_named_rig(options.rig, session, {options.left, options.right});
   std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
   inputs.insert(inputs.end(), {options.left, options.right});
   const Rig& rig = file.estimate.rig;

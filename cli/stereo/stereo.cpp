@@ -29,6 +29,7 @@
 #include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/matching/external_matcher.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
 
@@ -101,15 +102,31 @@ std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& fil
   if (input.left_valid) {
     std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });
   }
-  if (edges.empty()) throw Error(file, "no edges found", "give a textured image");
+  if (edges.empty()) {
+    constexpr float dim = 32;  // of 255
+    const std::vector<float>& grey = input.pair.left.values;
+    const float largest = *std::max_element(grey.begin(), grey.end());
+    throw Error(file,
+                largest < dim ? fmt::format("no edges found: its grey values end at {:.1f} % of "
+                                            "their range",
+                                            largest / 2.55)
+                              : "no edges found",
+                largest < dim ? "multiply the values of both images by one factor: those of 12 "
+                                "bits in a 16-bit file by 16"
+                              : "give a textured image");
+  }
   return edges;
 }
 
 StereoResult look(const StereoArguments& options, const StereoInput& input) {
-  const Matcher matcher = single_matcher(options.matcher);
+  MapRange map;
+  MatcherOptions told = options.matcher;
+  told.told = [&map](const MapRange& range) { map = range; };
+  const Matcher matcher = single_matcher(told);
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
+  result.map = map;
   check_not_swapped(matcher, result.found, input.range, input.exchanged, options.input.left);
   result.segments = edge_segments(result.edges);
   SegmentDisparityOptions how;
@@ -135,15 +152,24 @@ std::string sigma_words(const DepthFigures& f) {
 
 void check_result(const StereoArguments& options,
                   const StereoInput& input,
+                  const StereoResult& result,
                   const EdgeMetrics& edges,
                   const DepthFigures& depth,
                   Session& session) {
+  const std::string of_map = doubt_about(result.map, input.range.max_px);
   if (input.field.unrectified) {
     session.add_trust_warning(
         "the rows of the two images are not aligned: " + describe(input.field) +
         (options.input.rectified ? "; rectify the pair first (give --rig and leave out --rectified)"
                                  : "; check that the rig matches the current cameras and that the "
                                    "images are simultaneous"));
+  } else if (input.field.misaligned && !input.repaired) {
+    session.add_trust_warning(misalignment(input.field) +
+                              (options.input.rectified
+                                   ? "--repair corrects this"
+                                   : "--repair corrects this, a calibration of today its cause"));
+  } else if (!of_map.empty()) {
+    session.add_trust_warning(of_map);
   } else if (edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
@@ -262,7 +288,7 @@ void run(const StereoArguments& options, Session& session) {
   const StereoResult result = look(options, input);
   const EdgeMetrics edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
-  check_result(options, input, edges, depth, session);
+  check_result(options, input, result, edges, depth, session);
 
   const std::filesystem::path folder = options.output;
   std::vector<std::pair<std::filesystem::path, std::string>> files{
@@ -306,8 +332,8 @@ void add_cameras(CLI::App* verb, StereoInputOptions& o) {
   verb->add_option("--max-disparity", o.max_disparity_px,
                    "largest disparity to search, px (default: a quarter of the width)");
   verb->add_option("--min-disparity", o.min_disparity_px,
-                   "smallest disparity to search, px (default: 0, or that of points far away where "
-                   "the principal points differ)");
+                   "smallest disparity to search, px (default: 0, or that of points at infinity if "
+                   "the principal points say that it is less)");
   verb->add_flag("--repair", o.repair,
                  "correct the right image by the estimated vertical field, if significant");
   verb->add_option("--threads", o.threads, "number of threads for rectification (0: all)")

@@ -9,6 +9,7 @@
 #include "stereo/canny_edges.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
+#include "stereo/matching/external_matcher.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
 
@@ -23,6 +24,7 @@ struct StereoResult {
   std::vector<EdgeSegment> segments;
   std::vector<SegmentDisparity> lines;  ///< with the images' own disparities
   std::vector<MeasuredSegment> placed;  ///< one per line; empty without cameras
+  MapRange map;                         ///< of a program's map
 };
 
 /// edges.csv: every edge point of the rectified left image.

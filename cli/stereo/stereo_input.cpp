@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/stereo_input.h"
-#include "cli/stereo/row_doubt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +70,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
 void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Eigen::Vector2i size(input.pair.left.width_px, input.pair.left.height_px);
   if (!o.rig.empty()) {
-    input.estimate = read_named_rig(o.rig, session, o.left).estimate;
+    input.estimate = read_named_rig(o.rig, session, {o.left, o.right}).estimate;
     input.geometry = geometry_of_rectified_rig(input.estimate->rig);
     if (!input.geometry || input.geometry->size_px != size) {
       throw Error(
@@ -94,10 +93,11 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
     } else {
       const std::vector<double> centre = parse_numbers(o.centre_px, 2, "--centre-px");
       g.centre_px = {centre[0], centre[1]};
-      if ((g.centre_px.array() < 0).any() ||
-          (g.centre_px.array() > size.cast<double>().array()).any()) {
-        session.warn(fmt::format("--centre-px {} is outside the image of {}x{} px", o.centre_px,
-                                 size[0], size[1]));
+      const Eigen::Array2d in_image = g.centre_px.array() / size.cast<double>().array();
+      if (in_image.minCoeff() < 0 || in_image.maxCoeff() > 1) {
+        session.warn(fmt::format(
+            "--centre-px {}: outside the image of {}x{} px, which only a cropped image's can be",
+            o.centre_px, size[0], size[1]));
       }
     }
     input.geometry = g;
@@ -105,14 +105,29 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
   }
 }
 
-void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
-  take_cameras(o, input, session);
-  // Points far away have a disparity of minus the offset between the principal points.
-  if (!o.min_disparity_px && input.offset_px > 0) {
-    input.range.min_px = -static_cast<int>(std::ceil(std::min(input.offset_px, 1e6)));
+/// Searches as far as points at infinity, whose disparity is minus the offset, unless told
+/// otherwise.
+void reach_infinity(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  const double infinity_px = -std::round(input.offset_px);
+  if (o.min_disparity_px || infinity_px >= input.range.min_px) return;
+  if (infinity_px <= -input.pair.left.width_px) {
+    throw Error(o.rig.empty() ? "--offset-px" : o.rig,
+                fmt::format("the principal points are {:.6g} px apart, in images {} px wide",
+                            input.offset_px, input.pair.left.width_px),
+                "give the right principal point minus the left one, in pixels");
   }
+  input.range.min_px = static_cast<int>(infinity_px);
+  session.info(fmt::format(
+      "disparities from {} px are searched: the principal points are {:.6g} px apart, so that far "
+      "points have negative ones; --min-disparity sets another limit",
+      input.range.min_px, input.offset_px));
+}
+
+void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
   check_matcher_input(input.pair, input.range, o.right);
   check_two_images(input.pair, o.left, o.right);
+  take_cameras(o, input, session);
+  reach_infinity(o, input, session);
   input.field = vertical_field(input.pair, input.range);
   input.exchanged = [other = RectifiedPair{input.pair.right, input.pair.left}] { return other; };
 }
@@ -120,21 +135,20 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
 void repair_rows(bool wanted, StereoInput& input, Session& session) {
   const VerticalField& field = input.field;
   if (field.unrectified) return;
-  if (wanted || field.significant) session.info(describe(field));
+  if (!field.known) session.warn("row alignment could not be checked: " + describe(field));
+  if (field.known && (wanted || field.significant)) session.info(describe(field));
   if (!field.significant) return;
   if (wanted) {
     input.pair.right = corrected_right(input.pair.right, field);
     input.repaired = true;
-  } else if (const std::string doubt = row_doubt(field); !doubt.empty()) {
-    session.add_trust_warning(doubt);
-  } else {
+  } else if (!field.misaligned) {
     session.warn("the rows are slightly misaligned; --repair corrects this");
   }
 }
 
 int width_of(const StereoInputOptions& o, StereoInput& input, Session& session) {
   if (!o.rectified) {
-    input.estimate = read_named_rig(o.rig, session, o.left).estimate;
+    input.estimate = read_named_rig(o.rig, session, {o.left, o.right}).estimate;
     return input.estimate->rig.cameras.at(0).size_px[0];
   }
   input.pair = {read_image(o.left, session), read_image(o.right, session)};
@@ -147,9 +161,9 @@ StereoInput read_stereo_input(const StereoInputOptions& options, Session& sessio
   check(options);
   StereoInput input;
   const int width = width_of(options, input, session);
-  const int least = options.min_disparity_px.value_or(0);
-  input.range = {least,
-                 options.max_disparity_px.value_or(std::max(least + 1, width / default_range))};
+  const int least_px = options.min_disparity_px.value_or(0);
+  input.range = {least_px,
+                 options.max_disparity_px.value_or(std::max(least_px + 1, width / default_range))};
   if (options.rectified) {
     take_rectified(options, input, session);
   } else {

@@ -33,10 +33,11 @@ void check_not_swapped(const Matcher& matcher,
   const double swapped = matched_share(matcher.match(other, edges, range));
   if (swapped < min_swapped || swapped < min_ratio * given) return;
   throw Error(place,
-              fmt::format("left and right appear to be swapped: {:.0f} % of the edges match as "
-                          "given, {:.0f} % after swapping",
-                          100 * given, 100 * swapped),
-              "swap --left and --right; if disparities are negative, give --min-disparity");
+              fmt::format("left and right appear to be swapped, or disparities to be below {} px: "
+                          "{:.0f} % of the edges match as given, {:.0f} % after swapping",
+                          range.min_px, 100 * given, 100 * swapped),
+              "swap --left and --right; or, if the right principal point is further to the right "
+              "than the left one, give a smaller --min-disparity");
 }
 
 }  // namespace vernier::cli

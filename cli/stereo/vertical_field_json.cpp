@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/vertical_field_json.h"
 
+#include <string>
+
 #include "cli/program/session.h"
 #include "stereo/rectification/vertical_field.h"
 
@@ -17,10 +19,19 @@ Json vertical_field_json(const VerticalField& field, bool repaired) {
           {"matched", field.matched},
           {"used", field.used},
           {"known", field.known},
+          {"rms_px", field.known ? Json(field.rms_px()) : Json()},
           {"significant", field.significant},
+          {"misaligned", field.misaligned},
           {"unrectified", field.unrectified},
           {"words", describe(field)},
           {"repaired", repaired}};
+}
+
+std::string misalignment(const VerticalField& field) {
+  return fmt::format(
+      "the rows of the two images are misaligned by {:.2f} px rms, more than the {:.1f} px up to "
+      "which matches are as good as stated: {}; ",
+      field.rms_px(), VerticalFieldOptions{}.max_rms_px, describe(field));
 }
 
 }  // namespace vernier::cli

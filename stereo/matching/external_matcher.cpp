@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <system_error>
@@ -138,28 +139,6 @@ void check_run(const ProgramRun& run, const Command& command, double time_limit_
   if (!fault.empty()) throw Error(command.place, fault, "try the command in a shell");
 }
 
-/// As OpenCV's matchers, leaves disparities above the range unknown. Throws Error(place) if most
-/// are.
-void drop_above(const DisparityRange& range, DisparityMap& map, const std::string& place) {
-  const auto most = static_cast<float>(range.max_px) + 0.5F;
-  std::size_t known = 0, above = 0;
-  float largest = most;
-  for (float& disparity : map.values) {
-    known += disparity == disparity;
-    if (!(disparity > most)) continue;
-    largest = std::max(largest, disparity);
-    disparity = std::numeric_limits<float>::quiet_NaN();
-    ++above;
-  }
-  if (2 * above <= known) return;
-  throw Error(place,
-              fmt::format("{:.0f} % of the disparities are above the range of {} to {} px, the "
-                          "largest is {:.4g}",
-                          100.0 * static_cast<double>(above) / static_cast<double>(known),
-                          range.min_px, range.max_px, largest),
-              "make it write pixels (16-bit PNG: 256 per pixel), or search a larger range");
-}
-
 /// Reads the program's map; errors refer to the program.
 DisparityMap read_output(const fs::path& file,
                          const Command& command,
@@ -176,9 +155,7 @@ DisparityMap read_output(const fs::path& file,
     DisparityFileOptions options;
     options.scale = scale;
     options.min_px = range.min_px - 0.5;
-    DisparityMap map = read_disparity(file, options);
-    drop_above(range, map, file.filename().string());
-    return map;
+    return read_disparity(file, options);
   } catch (const Error& error) {
     std::string place = error.place();
     const std::string folder = (file.parent_path() / "").string();
@@ -187,17 +164,28 @@ DisparityMap read_output(const fs::path& file,
   }
 }
 
+/// Sets disparities above the range to unknown.
+MapRange cut_above(DisparityMap& map, const DisparityRange& range) {
+  MapRange counted;
+  for (float& d : map.values) {
+    if (!(d == d)) continue;
+    const bool above = !(d < static_cast<float>(range.max_px) + 0.5F);
+    if (above) d = std::numeric_limits<float>::quiet_NaN();
+    ++(above ? counted.above : counted.within);
+  }
+  return counted;
+}
+
 DisparityMap run(const Command& command,
                  const RectifiedPair& pair,
                  const DisparityRange& range,
                  const ExternalMatcherOptions& options) {
   check_matcher_input(pair, range, command.place);
-  if (range.min_px < 0 && fs::path(command.output).extension() == ".png") {
+  if (range.min_px < 0 && command.output == "output.png") {
     throw Error(command.place,
-                fmt::format("writes PNG, which holds no disparities below 0, and the range begins "
-                            "at {}",
+                fmt::format("a PNG cannot hold the disparities below 0 of a range from {} px",
                             range.min_px),
-                "use {output} (PFM) or {output.npy}");
+                "use {output} or {output.npy}");
   }
   const TemporaryFolder folder;
   write_image(folder, "left.png", pair.left);
@@ -211,6 +199,8 @@ DisparityMap run(const Command& command,
                             pair.left.width_px, pair.left.height_px),
                 "make it write one disparity per pixel of the left image");
   }
+  const MapRange counted = cut_above(map, range);
+  if (options.told) options.told(counted);
   return map;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 #include "stereo/disparity_file.h"
@@ -11,12 +13,22 @@
 
 namespace vernier::stereo::internal {
 
+/// How many values of a map are within the range asked for, and how many above it.
+struct MapRange {
+  std::size_t within = 0, above = 0;
+
+  double share_above() const {
+    return above == 0 ? 0 : static_cast<double>(above) / static_cast<double>(within + above);
+  }
+};
+
 struct ExternalMatcherOptions {
   std::string name = {};  ///< empty: name of the program
   /// Per pair; 0: none. With a limit, the terminal's interrupt does not reach the program.
   double time_limit_s = 0;
   double scale = 0;  ///< file values per pixel; 0: 256 for a 16-bit PNG, else 1
   EdgeSampling sampling = EdgeSampling::foreground;
+  std::function<void(const MapRange&)> told = {};  ///< called with every map's
 };
 
 /// Runs a program as a matcher, by a command line per pair:
@@ -33,10 +45,10 @@ struct ExternalMatcherOptions {
 /// splitting, so blanks in file names are safe. To use a shell, write sh -c '…' sh {left} … and
 /// refer to "$1" ….
 ///
-/// Disparities more than half a pixel below the range, such as −1, are unknown. Throws Error naming
-/// the command if {left}, {right} or {output} is missing; when matching, if the program is not
-/// found, exceeds the time limit, exits with a non-zero status (with its last line of output), or
-/// writes no map or one of another size.
+/// Disparities more than half a pixel outside the range, such as −1, are unknown. Throws Error
+/// naming the command if {left}, {right} or {output} is missing; when matching, if the program is
+/// not found, exceeds the time limit, exits with a non-zero status (with its last line of output),
+/// or writes no map or one of another size, or if a PNG would have to hold negative disparities.
 Matcher external_matcher(const std::string& command, const ExternalMatcherOptions& options = {});
 
 /// The dense disparity map.

@@ -15,6 +15,9 @@ struct VerticalFieldOptions {
   int corners = 98;                ///< number of corners of the left image, evenly distributed
   double min_score = 0.8;          ///< minimum ZNCC of aligned patches
   double min_correction_px = 0.1;  ///< fields that are smaller everywhere are not corrected
+  /// Root mean square over the image above which matches along rows are not to be trusted: up to
+  /// here they are as good as stated, or nearly (docs/rectification.md).
+  double max_rms_px = 0.5;
 };
 
 /// Vertical offset of the right image of a pair relative to the left one, px, positive downwards:
@@ -34,6 +37,7 @@ struct VerticalField {
   int used = 0;              ///< matches consistent with the field
   bool known = false;        ///< enough matches agree; if false, the coefficients are not valid
   bool significant = false;  ///< known, larger than its uncertainty and worth correcting
+  bool misaligned = false;   ///< significant, and above max_rms_px by two standard deviations
   /// The pair is not rectified, or not of one scene: hardly any corner has a partner within the
   /// band, the matches agree on no affine field, or the field exceeds the band.
   bool unrectified = false;
@@ -44,7 +48,7 @@ struct VerticalField {
            coefficients_px[2] * (y - 0.5 * (height_px - 1)) / height_px;
   }
   double largest_px() const;  ///< maximum |dy| over the image
-  double rms_px() const;      ///< of dy over the image
+  double rms_px() const;      ///< root mean square of dy over the image
 };
 
 /// Estimates the field of a pair from matched corners:

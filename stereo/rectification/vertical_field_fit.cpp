@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/rectification/vertical_field_fit.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -26,10 +27,11 @@ using Eigen::Vector3d;
 
 // With half the matches wrong, all triples are bad with probability 2e-9.
 constexpr int triples = 150;
-constexpr double near_px = 0.4;    // residual at which the cost of a match saturates
-constexpr double tukey = 4.685;    // 95 % efficient for normal errors
-constexpr double floor_px = 0.05;  // added to the standard deviations of alignments
-constexpr double min_scale = 0.3;  // minimum; exactly equal matches would give 0
+constexpr double near_px = 0.4;          // residual at which the cost of a match saturates
+constexpr double tukey = 4.685;          // 95 % efficient for normal errors
+constexpr double floor_px = 0.05;        // added to the standard deviations of alignments
+constexpr double min_scale = 0.3;        // minimum; exactly equal matches would give 0
+constexpr double least_curvature = 0.3;  // of A by N; near 0.9 for normal errors
 constexpr int max_fit_rounds = 50;
 constexpr double converged_px = 1e-6;
 constexpr int min_fitted = 12;         // matches: four per coefficient …
@@ -142,16 +144,21 @@ Fit reweighted(const Problem& problem, const Vector3d& start) {
 }
 
 /// A⁻¹ B A⁻¹ with A = Σ ψ'(r) xxᵀ / σ², B = Σ (ψ(r) / (1 − h))² xxᵀ / σ²; the leverage h corrects
-/// for residuals being smaller than errors (MacKinnon and White 1985).
+/// for residuals being smaller than errors (MacKinnon and White 1985). Where many residuals are
+/// where ψ falls, A is nearly singular and says nothing; N = Σ w xxᵀ / σ² of the last step replaces
+/// it.
 Matrix3d covariance_of(const Problem& problem, const Fit& fit) {
   const Eigen::VectorXd r = problem.scaled_residuals(fit.p);
   const Eigen::VectorXd weight = tukey_weights(r, fit.scale);
   const Eigen::Matrix<double, Eigen::Dynamic, 3> X = problem.inverse_sigma.asDiagonal() * problem.X;
   const Eigen::VectorXd u2 = (r / (tukey * fit.scale)).cwiseAbs2();
   Matrix3d A = Matrix3d::Zero(), B = Matrix3d::Zero();
+  const Matrix3d N = X.transpose() * weight.asDiagonal() * X;
   for (Eigen::Index i = 0; i < r.size(); ++i) {
     if (u2[i] < 1) A += (1 - u2[i]) * (1 - 5 * u2[i]) * X.row(i).transpose() * X.row(i);
   }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d> of_both(A, N, Eigen::EigenvaluesOnly);
+  if (!(of_both.eigenvalues()[0] > least_curvature)) A = N;
   const Matrix3d inverse = A.inverse();
   for (Eigen::Index i = 0; i < r.size(); ++i) {
     const double h = weight[i] * (X.row(i) * inverse * X.row(i).transpose()).value();
@@ -170,6 +177,16 @@ std::array<RowVector3d, 4> image_corners(const VerticalField& field) {
   return rows;
 }
 
+/// The mean square of dy over the image that the field has but for two standard deviations.
+double surely_px2(const VerticalField& field) {
+  const Vector3d over_image(1, 1.0 / 12, 1.0 / 12);  // of the squares, x and y within ± 1/2
+  const Matrix3d& C = field.covariance_px2;
+  const Vector3d half_slope = over_image.cwiseProduct(field.coefficients_px);
+  const double by_noise = C.diagonal().dot(over_image);
+  const double sd = 2 * std::sqrt(half_slope.dot(C * half_slope));
+  return field.rms_px() * field.rms_px() - by_noise - 2 * sd;
+}
+
 /// Sets the flags from the estimates.
 void judge(VerticalField& field, const VerticalFieldOptions& options) {
   double widest = 0;
@@ -183,6 +200,8 @@ void judge(VerticalField& field, const VerticalFieldOptions& options) {
   const double chi2 =
       field.coefficients_px.dot(field.covariance_px2.inverse() * field.coefficients_px);
   field.significant = field.known && chi2 > chi2_3_999 && largest > options.min_correction_px;
+  field.misaligned =
+      field.significant && surely_px2(field) > options.max_rms_px * options.max_rms_px;
   field.unrectified = !agree || largest > options.band_px;
 }
 
@@ -197,9 +216,9 @@ double VerticalField::largest_px() const {
 }
 
 double VerticalField::rms_px() const {
-  const double width = width_px, height = height_px;  // of whole pixels: (w^2 - 1) / (12 w^2)
-  const double by_x = (1 - 1 / (width * width)) / 12, by_y = (1 - 1 / (height * height)) / 12;
-  return std::sqrt(coefficients_px.cwiseAbs2().dot(Eigen::Vector3d(1, by_x, by_y)));
+  // x and y are uniform over [-1/2, 1/2]
+  const Eigen::Vector3d squares = coefficients_px.cwiseAbs2();
+  return std::sqrt(squares[0] + (squares[1] + squares[2]) / 12);
 }
 
 VerticalField fit_vertical_field(const std::vector<VerticalOffset>& offsets,

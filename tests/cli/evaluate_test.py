@@ -141,6 +141,13 @@ class Evaluate(unittest.TestCase):
             # 5 standard deviations of a share of 3,000 edges; at discontinuities either surface counts
             self.assertAlmostEqual(found['bad_1_smooth'], share, delta=5 * (share * (1 - share) / 3000) ** 0.5)
 
+    def test_a_map_in_other_units_is_doubted(self):
+        truth = [[d / 4 for d in row] for row in pair()[2]]
+        found, said = self.score_of(self.copier('scaled', [[256 * d for d in row] for row in truth]), code=3)
+        self.assertIn("100 % of the program's disparities are above the 24 px asked for", said)
+        self.assertNotIn('check that the ground truth', said)
+        self.assertEqual(found['density'], 0)
+
     def test_truth_of_separate_points(self):
         draw = random.Random(9)
         truth = [[d / 4 for d in row] for row in pair()[2]]
@@ -210,7 +217,7 @@ class Evaluate(unittest.TestCase):
     def test_rows_of_another_height_are_doubted(self):
         right = pair()[1]
         write_pgm(self.folder / 'lower.pgm', right[:1] * 2 + right[:HEIGHT - 2])
-        self.doubts(of='left: the rows are misaligned by', right='lower')
+        self.doubts(of='left: the rows of the two images are misaligned by', right='lower')
         self.assertEqual(self.run_it('-q', '--repair', right='lower').returncode, 0)
 
     def test_programs_have_names_and_places(self):

@@ -118,11 +118,10 @@ class Rectify(CalibratedCase):
         rig = self.lowered_rig(2)
         done = cli_test.vernier(*self.arguments(rig=rig), '--json', '-q')
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn('the rows are misaligned by 2.', done.stderr)
-        said = json.loads(done.stdout)
-        self.assertIn('the rows are misaligned', said['doubts'][0])
-        found = said['vertical_field']
-        self.assertTrue(found['significant'])
+        self.assertIn('the rows of the two images are misaligned by 2.', done.stderr)
+        found = json.loads(done.stdout)['vertical_field']
+        self.assertTrue(found['significant'] and found['misaligned'])
+        self.assertFalse(found['unrectified'])
         self.assertFalse(found['repaired'])
         mean, _ = self.row_offset()
         self.assertLess(abs(mean - 1.9), 0.3)  # 2 px of the raw image

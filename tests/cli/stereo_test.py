@@ -10,6 +10,7 @@ import json
 import math
 import pathlib
 import shutil
+import struct
 import sys
 import tempfile
 import unittest
@@ -142,26 +143,6 @@ class Made(Case):
         self.assertAlmostEqual(float(again['z1_m']), float(s['z1_m']), 6)
         self.assertIn(s['z1_m'], first)
 
-    def test_an_offset_is_part_of_the_range(self):
-        """The right image is moved by eight columns: disparities of -2 and 6."""
-        right = pair()[1]
-        write_pgm(self.images / 'cut.pgm', [[0] * 8 + row[:-8] for row in right])
-        words = (*self.arguments(right='cut', most=16), '-q', '--json')
-        done = self.works(*words, *self.values(), '--offset-px', 8)
-        said = json.loads(done.stdout)
-        self.assertEqual(said['min_disparity_px'], -8)
-        self.assertGreater(said['density'], 0.8)
-
-    def test_rows_of_another_height_are_doubted(self):
-        right = pair()[1]
-        for rows, code in ((0, 0), (1, 3), (3, 3)):
-            write_pgm(self.images / 'lower.pgm', right[:1] * rows + right[:HEIGHT - rows])
-            done = cli_test.vernier(*self.arguments(right='lower'), '-q', '--json')
-            self.assertEqual(done.returncode, code, done.stderr)
-            if code == 3:
-                self.assertIn('the rows are misaligned by', done.stderr)
-        self.works(*self.arguments(right='lower'), '-q', '--repair')
-
     def test_both_parts_of_the_covariance(self):
         done = self.works(*self.arguments(), '--rig', self.images / 'rig.json', '--json')
         said = json.loads(done.stdout)
@@ -204,6 +185,112 @@ class Made(Case):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn('uncertain by more than 10 %', json.loads(done.stdout)['doubts'][-1])
         self.assertTrue((self.folder / 'seen/segments.json').exists())
+
+    def test_vertical_disparity_is_doubted_in_silence_too(self):
+        for down in (1, 3):
+            rows = pair()[1]
+            write_pgm(self.images / 'lower.pgm', rows[:1] * down + rows[:HEIGHT - down])
+            done = cli_test.vernier(*self.arguments(right='lower'), '-q', '--json')
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn(f'misaligned by {down}.0', done.stderr)
+            self.assertTrue((self.folder / 'seen/edges.csv').exists())
+            self.assertTrue(json.loads(done.stdout)['vertical_field']['misaligned'])
+            self.works(*self.arguments(right='lower'), '-q', '--repair')
+
+    def test_an_offset_says_that_disparities_are_negative(self):
+        """The right principal point is 16 px further right: the wall's 6 px become -10."""
+        write_pgm(self.images / 'shifted.pgm', [row[:1] * 16 + row[:-16] for row in pair()[1]])
+        words = self.arguments(right='shifted', most=8)
+        done = self.works(*words, *self.values(), '--offset-px', 16, '--json')
+        said = json.loads(done.stdout)
+        self.assertEqual((said['min_disparity_px'], said['max_disparity_px']), (-16, 8))
+        self.assertGreater(said['density'], 0.8)
+        self.assertIn('disparities from -16 px are searched', done.stderr)
+        self.assertAlmostEqual(said['depth']['median_m'], F_PX * BASELINE_M / 6, 0)
+        (self.folder / 'rig.json').write_text(json.dumps(pinholes(offset=16)))
+        said = json.loads(self.works(*words, '--rig', self.folder / 'rig.json', '--json').stdout)
+        self.assertEqual(said['min_disparity_px'], -16)
+        said = json.loads(cli_test.vernier(*words, *self.values(), '--offset-px', 16,
+                                           '--min-disparity', -12, '--json').stdout)
+        self.assertEqual(said['min_disparity_px'], -12)
+        self.complains(*self.arguments(right='shifted', most=12), '-q',
+                       of='give a smaller --min-disparity')
+        self.complains(*self.arguments(), *self.values(), '-q', '--offset-px', 5000,
+                       of='--offset-px: the principal points are 5000 px apart')
+
+    def program(self, scale):
+        """A matcher that writes the true map, its values times `scale`."""
+        truth = pair()[2]
+        with open(self.folder / 'map.pfm', 'wb') as out:
+            out.write(b'Pf\n%d %d\n-1\n' % (WIDTH, HEIGHT))
+            for row in reversed(truth):
+                out.write(struct.pack(f'<{WIDTH}f', *(scale * value / 4 for value in row)))
+        return f"sh -c 'cp \"$0\" \"$1\"' {self.folder}/map.pfm {{output}} {{left}} {{right}}"
+
+    def test_a_programs_map_of_another_scale_is_doubted(self):
+        words = (*self.arguments(), *self.values(), '--json', '-q', '--command')
+        self.assertGreater(json.loads(self.works(*words, self.program(1)).stdout)['density'], 0.95)
+        for scale in (4, 256):
+            done = cli_test.vernier(*words, self.program(scale))
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn('the scale of its map may be wrong', done.stderr)
+            self.assertEqual(len(json.loads(done.stdout)['doubts']), 1)
+
+    def test_programs_take_no_matchers_name(self):
+        for name in ('edge', 'stretch', 'bm', 'sgbm'):
+            self.complains(*self.arguments(), '-q', '--command', name + '=x {left} {right} {output}',
+                           of=f'"{name}" is a built-in matcher; give the program another name',
+                           leaves=[self.folder / 'seen'])
+        self.complains(*self.arguments(), '-q', '--min-disparity', -4, '--command',
+                       'x {left} {right} {output.png}', of='a PNG cannot hold',
+                       leaves=[self.folder / 'seen'])
+
+    def opencv_rig(self, baseline_m=BASELINE_M):
+        rig = pinholes(covariance=False)
+        rig['cameras'][1]['from_first']['translation_m'][0] = -baseline_m
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        file = self.folder / 'rig.yml'
+        self.works('convert', self.folder / 'rig.json', '--to', 'opencv', '-o', file, '-q')
+        return file
+
+    def test_images_tell_the_size_that_an_opencv_file_lacks(self):
+        file = self.opencv_rig()
+        lines = file.read_text().splitlines()
+        file.write_text('\n'.join(line for line in lines if not line.startswith('image_')))
+        words = self.arguments(rectified=False)
+        said = json.loads(self.works(*words, '--rig', file, '--json', '-q').stdout)
+        self.assertGreater(said['segments']['placed'], 20)
+        rectified = self.works('rectify', '--rig', file, *words[1:5], '-o', self.folder / 'r', '--json')
+        self.assertEqual(json.loads(rectified.stdout)['size_px'], [WIDTH, HEIGHT])
+        self.complains('convert', file, '-o', self.folder / 'x.json', '-q', of="convert's option --size",
+                       leaves=[self.folder / 'x.json'])
+
+    def test_a_baseline_in_millimetres_is_told(self):
+        words = self.arguments(rectified=False)
+        done = self.works(*words, '--rig', self.opencv_rig())
+        self.assertNotIn('millimetres', done.stderr)
+        done = self.works(*words, '--rig', self.opencv_rig(1000 * BASELINE_M))
+        self.assertIn('is 100 m from the first; if the file is in millimetres, convert it',
+                      done.stderr)
+
+    def test_rows_that_cannot_be_checked_are_told(self):
+        for name, rows in zip(('left', 'right'), pair()):
+            write_pgm(self.images / f'{name}_strip.pgm', rows[40:80])
+        done = cli_test.vernier(*self.arguments(left='left_strip', right='right_strip'))
+        self.assertIn('warning: row alignment could not be checked: too few corners', done.stderr)
+
+    def test_a_principal_point_outside_is_told(self):
+        done = self.works(*self.arguments(), *self.values()[:4], '--centre-px', '9999,5')
+        self.assertIn('--centre-px 9999,5: outside the image of 200x120 px', done.stderr)
+
+    def test_12_bits_in_16_are_told(self):
+        for name, rows in zip(('left', 'right'), pair()):
+            with open(self.images / f'{name}12.pgm', 'wb') as out:
+                out.write(b'P5\n%d %d\n65535\n' % (WIDTH, HEIGHT))
+                for row in rows:
+                    out.write(struct.pack(f'>{WIDTH}H', *(4 * value for value in row)))
+        self.complains(*self.arguments(left='left12', right='right12'), '-q',
+                       of='those of 12 bits in a 16-bit file by 16', leaves=[self.folder / 'seen'])
 
     def test_complaints(self):
         out = [self.folder / 'seen']
@@ -304,7 +391,11 @@ class Raw(CalibratedCase):
         lowered = self.folder / 'lowered.json'
         lowered.write_text(json.dumps(rig))
         words = ['stereo', '--rig', lowered, *self.arguments()[3:], '--json']
-        plain = json.loads(cli_test.vernier(*words).stdout)
+        done = cli_test.vernier(*words, '-q')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, 'misaligned by [12]')
+        self.assertTrue((self.folder / 'seen/segments.json').exists())
+        plain = json.loads(done.stdout)
         repaired = json.loads(self.works(*words, '--repair').stdout)
         self.assertTrue(plain['vertical_field']['significant'])
         self.assertFalse(plain['vertical_field']['repaired'])

@@ -156,34 +156,30 @@ TEST_F(ExternalMatcher, MayWriteOtherFormats) {
   expect_same(map_of(copy("{output.png}", folder_.path() / "8.png")), two);
 }
 
-TEST_F(ExternalMatcher, KnowsNothingWhereTheMapIsBelowTheRange) {
-  map_.values[0] = -1, map_.values[1] = -16;
+TEST_F(ExternalMatcher, KnowsNothingWhereTheMapIsOutsideTheRange) {
+  map_.values[0] = -1, map_.values[1] = -16, map_.values[2] = 9, map_.values[4] = 3.4F,
+  map_.values[5] = 3.6F;
   write_disparity(folder_.path() / "map.pfm", map_);
-  map_.values[0] = map_.values[1] = unknown;
+  map_.values[0] = map_.values[1] = map_.values[2] = map_.values[5] = unknown;
   const std::string program = script("copy", "cp " + folder_.path().string() + "/map.pfm \"$3\"\n");
-  expect_same(map_of(program + " {left} {right} {output}"), map_.values);
+  MapRange told;
+  expect_same(map_of(program + " {left} {right} {output}",
+                     {.told = [&](const MapRange& range) { told = range; }}),
+              map_.values);
+  EXPECT_EQ(told.within, 7u);
+  EXPECT_EQ(told.above, 2u);
+  EXPECT_NEAR(told.share_above(), 2.0 / 9, 1e-12);
+  EXPECT_EQ(MapRange{}.share_above(), 0);
 }
 
-TEST_F(ExternalMatcher, KnowsNothingWhereTheMapIsAboveTheRange) {
-  const std::string program = script("copy", "cp " + folder_.path().string() + "/map.pfm \"$3\"\n");
-  const auto map_in = [&](const DisparityRange& range) {
-    return external_map(pair_, range, program + " {left} {right} {output}");
-  };
-  DisparityMap map{4, 3, {0, 1, 2, 3, 3.4f, 3.6f, 0, 0, 1, 1, 2, 2}};
-  write_disparity(folder_.path() / "map.pfm", map);
-  map.values[5] = unknown;
-  expect_same(map_in({0, 3}), map.values);
-  for (float& d : map.values) d = 256 * (d + 1);  // a program that writes KITTI's units
-  write_disparity(folder_.path() / "map.pfm", map);
-  const std::string said = test::error_message([&] { map_in({0, 3}); });
-  EXPECT_NE(said.find("100 % of the disparities are above the range of 0 to 3 px"),
-            std::string::npos)
-      << said;
-  const std::string png = script("none", "exit 0\n") + " {left} {right} {output.png}";
-  EXPECT_NE(test::error_message([&] {
-              external_map(pair_, {-2, 3}, png);
-            }).find("PNG, which holds no disparities below 0"),
-            std::string::npos);
+TEST_F(ExternalMatcher, CannotWriteNegativeDisparitiesToAPng) {
+  const std::string command = "true {left} {right} {output.png}";
+  EXPECT_EQ(test::error_message([&] {
+              external_map(pair_, {-2, 3}, command);
+            }),
+            "matcher '" + command +
+                "': a PNG cannot hold the disparities below 0 of a range from -2 px; use {output} "
+                "or {output.npy}");
 }
 
 TEST_F(ExternalMatcher, IsToldApartAtBlanksOutsideOfQuotes) {

@@ -165,6 +165,53 @@ TEST(VerticalField, SaysWhatItFound) {
   EXPECT_NE(describe(field).find("no significant vertical offset"), std::string::npos);
 }
 
+/// Beyond half a pixel rms over the image matches are wrong more often than stated.
+TEST(VerticalField, OfMoreThanHalfAPixelIsNotTrusted) {
+  for (const double lower_px : {0.0, 0.3, -0.4, 0.7, -2.0}) {
+    const VerticalField field = vertical_field(photographed(pair_rig(lower_px)), {0, 64});
+    EXPECT_EQ(field.misaligned, std::abs(lower_px) > 0.5) << lower_px;
+    EXPECT_NEAR(field.rms_px(), std::abs(lower_px), 0.06);
+  }
+  EXPECT_NEAR(field_of(0.3, -1.2, 0.9, 100, 80).rms_px(), std::sqrt(0.09 + 2.25 / 12), 1e-12);
+  EXPECT_TRUE(vertical_field(photographed(pair_rig(0, 0.01)), {0, 64}).misaligned);  // 1.2 px rms
+}
+
+/// Residuals where Tukey's ψ falls, at the sides of the image: with their size, 0.98 σ, the
+/// curvature of the cost passes through 0, and a field that most matches agree on to the last digit
+/// was taken for unknown.
+TEST(VerticalField, IsKnownWhereManyResidualsAreAtTheKernelsEdge) {
+  for (double size = 0.95; size < 1; size += 0.001) {
+    std::vector<VerticalOffset> offsets;
+    for (int i = 0; i < 400; ++i) {
+      const int x = i / 10, y = i % 10;
+      VerticalOffset o{{5.0 + 11 * x, 5.0 + 40 * y}, 1.2, 0.1};
+      const double off_px = size * std::hypot(o.sigma_px, 0.05);
+      if (std::min(x, 39 - x) < 5) o.dy_px += (x + y) % 2 == 0 ? off_px : -off_px;
+      offsets.push_back(o);
+    }
+    const VerticalField field = fit_vertical_field(offsets, 400, {450, 375});
+    EXPECT_TRUE(field.known && field.misaligned) << size;
+    EXPECT_LT(field.covariance_px2.diagonal().maxCoeff(), 0.01) << size;
+    EXPECT_NEAR(field.coefficients_px[0], 1.2, 0.05) << size;
+  }
+}
+
+/// One that might be noise is not held against a pair.
+TEST(VerticalField, OfFewMatchesIsNotCalledMisaligned) {
+  RandomStream draws({.seed = 21, .source = 207});
+  int known = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<VerticalOffset> offsets;
+    for (int i = 0; i < 24; ++i) {
+      offsets.push_back({{draws.uniform(0, 449), draws.uniform(0, 374)}, draws.normal(), 0.5});
+    }
+    const VerticalField field = fit_vertical_field(offsets, 40, {450, 375});
+    known += field.known;
+    EXPECT_FALSE(field.misaligned);
+  }
+  EXPECT_GT(known, 0);
+}
+
 TEST(VerticalField, ImagesThatAreNotRectifiedAreSaidToBe) {
   for (const Rig& rig : {pair_rig(30), pair_rig(0, 0.1), pair_rig(-5.4)}) {
     const VerticalField field = vertical_field(photographed(rig), {0, 64});

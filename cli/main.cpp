@@ -20,6 +20,7 @@
 #include "cli/program/session.h"
 #include "cli/program/streams.h"
 #include "cli/verbs.h"
+#include "sim/mpi/mpi_launch.h"
 
 namespace {
 
@@ -96,7 +97,8 @@ std::string line_of(const std::filesystem::filesystem_error& error) {
 int main(int argc, char** argv) {
   using namespace vernier;
   cli::open_missing_streams();
-  cli::watch_ending_signals();
+  const auto launch = sim::internal::mpi_launch();
+  cli::watch_ending_signals(launch && launch->rank > 0);
   cli::watch_memory();
   silence_libraries();
   cli::Session session;

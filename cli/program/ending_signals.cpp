@@ -22,6 +22,7 @@ struct EndingState {
   int signal = 0;                    ///< that asked it to stop
   sigset_t ignored_by_caller{};
   sigset_t watched{};
+  bool told_by_another = false;  ///< as in watch_ending_signals()
 };
 
 EndingState& ending() {
@@ -71,8 +72,10 @@ void* wait_for_signals(void*) {
   for (const int next : {SIGINT, SIGTERM, SIGHUP}) {
     if (sigismember(&ending().watched, next)) restore_default(next);
   }
-  say(std::string(::isatty(STDERR_FILENO) ? "\n" : "") + "vernier: ended by " + short_name(signal) +
-      "; unfinished files are removed\n");
+  if (!ending().told_by_another) {
+    say(std::string(::isatty(STDERR_FILENO) ? "\n" : "") + "vernier: ended by " +
+        short_name(signal) + "; unfinished files are removed\n");
+  }
   end_by(signal);
 }
 
@@ -91,8 +94,9 @@ void start_watching() {
 
 }  // namespace
 
-void watch_ending_signals() {
+void watch_ending_signals(bool told_by_another) {
   EndingState& state = ending();
+  state.told_by_another = told_by_another;
   sigemptyset(&state.ignored_by_caller);
   sigemptyset(&state.watched);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {

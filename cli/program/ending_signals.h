@@ -12,7 +12,8 @@ namespace vernier::cli {
 /// Signals INT, TERM and HUP remove temporary files and end the program by the same signal, so that
 /// the caller sees which; those that the caller ignores (nohup) stay ignored. A second signal ends
 /// it at once. Also makes faults of SIGPIPE and SIGXFSZ. Call it before any thread is started.
-void watch_ending_signals();
+/// `told_by_another`: says nothing of a signal, since another process does: mpirun ends all alike.
+void watch_ending_signals(bool told_by_another);
 
 /// Whether the caller of the program ignored the signal.
 bool was_ignored(int signal) noexcept;

@@ -116,6 +116,11 @@ class BadInput(RankCase):
         self.refused(self.study_on(2, '--shard', '2/2'), 'is not i/n with')
         self.assertFalse(self.out.exists())
 
+    def test_is_said_once_however_late_a_rank_starts(self):
+        """mpirun ends those that are still starting when rank 0 has refused."""
+        for _ in range(5):
+            self.refused(self.on_ranks(16, 'study', 'status', self.shared / 'done'), 'leave mpirun out')
+
     def test_another_study_in_the_folder(self):
         out = self.finished()
         before = contents(out)

@@ -20,6 +20,7 @@
 #include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/effects.h"
+#include "calib/calibration/lens_field.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/residual_diagnosis.h"
@@ -83,19 +84,18 @@ void linearise(Solution& s) {
   }
 }
 
+/// Throws Error if there are none.
 double degrees_of_freedom(const Solution& s) {
   const double nuisance =
       6 * static_cast<double>(s.state.frames.size()) + (s.problem.warp == BoardWarp::free ? 2 : 0);
-  return s.cost.equations.residuals - s.data_parameters - nuisance;
+  const double dof = s.cost.equations.residuals - s.data_parameters - nuisance;
+  if (dof > 0) return dof;
+  throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
 }
 
 /// σ from the residuals, with their degrees of freedom.
 double estimated_sigma(const Solution& s) {
-  const double dof = degrees_of_freedom(s);
-  if (!(dof > 0)) {
-    throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
-  }
-  return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / dof);
+  return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / degrees_of_freedom(s));
 }
 
 /// Excludes outliers. Corners are assessed with a rich lens model, so that the misfit of a simple
@@ -189,6 +189,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   Solution s;
   if (options.check_input) s.diagnosis = check_observations(observations);
   s.state = initial_state(observations, models);
+  leave_out_beyond_field(observations, s.state, s.diagnosis.warnings);
   if (options.check_input) {
     const bool free = options.held.empty() && options.known.empty() && !options.prior;
     s.diagnosis.add(check_views(observations, s.state, {.tilts = free}));
@@ -258,11 +259,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   summary.rms_px =
       s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / s.cost.equations.residuals);
   summary.chi2 = s.cost.equations.chi2;
-  const double dof = degrees_of_freedom(s);
-  if (!(dof > 0)) {
-    throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
-  }
-  summary.dof = static_cast<int>(std::lround(dof));
+  summary.dof = static_cast<int>(std::lround(degrees_of_freedom(s)));
   summary.outliers = s.outliers;
   measure_outliers(s.observations.target_m, s.state, summary.outliers);
   summary.warnings = s.diagnosis.warnings;

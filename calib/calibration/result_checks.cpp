@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib/calibration/lens_field.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
@@ -38,7 +39,7 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
   constexpr int columns = 33, rows = 25;
   const Eigen::Vector2d last_px = (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
   const Eigen::Vector2d centre_px(camera.ox_px(), camera.oy_px());
-  int folded = 0;
+  int folded = 0, beyond = 0;
   double least_px = std::numeric_limits<double>::infinity();
   std::vector<std::string> regions;
   for (int j = 0; j < rows; ++j) {
@@ -46,6 +47,10 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
       const double x = static_cast<double>(i) / (columns - 1);
       const double y = static_cast<double>(j) / (rows - 1);
       const Eigen::Vector2d pixel(x * last_px.x(), y * last_px.y());
+      if (is_beyond(camera, pixel, fisheye_field_rad)) {
+        ++beyond;
+        continue;
+      }
       if (try_unproject(camera, pixel)) continue;
       ++folded;
       least_px = std::min(least_px, (pixel - centre_px).norm());
@@ -55,8 +60,15 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
       }
     }
   }
-  if (folded == 0) return {};
-  const double percent = 100.0 * folded / (columns * rows);
+  const double percent = 100.0 * (folded > 0 ? folded : beyond) / (columns * rows);
+  if (folded == 0 && beyond == 0) return {};
+  if (folded == 0) {
+    return fmt::format(
+        "camera \"{}\" sees 90 degrees from its axis and beyond in {:.{}f} % of its image, where "
+        "{} "
+        "has no rays",
+        camera.name, percent, percent < 10 ? 1 : 0, model_name(camera.model));
+  }
   return fmt::format(
       "the distortion of camera \"{}\" cannot be inverted in {:.{}f} % of its image ({}; from "
       "{:.0f} "

@@ -45,7 +45,8 @@ std::optional<std::string> noise_warning(double chi2, double dof, double pixel_s
 
 /// Checks that each pixel of each camera has a ray. One warning, with the region, per camera whose
 /// distortion cannot be inverted at some of 33 x 25 pixels spread over its image: the coefficients
-/// fold the image where no corner constrains them.
+/// fold the image where no corner constrains them, or, if that is all, the lens sees further than
+/// its model goes.
 std::vector<std::string> inversion_warnings(const Rig& rig);
 
 }  // namespace vernier::internal

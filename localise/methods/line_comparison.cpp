@@ -27,10 +27,6 @@ namespace {
 
 constexpr int rough_steps = 2, fine_steps = 4;  // Gauss-Newton steps of a finalist
 
-Pose2D turned(const Pose2D& first, double turn_rad) {
-  return {first.x_m, first.y_m, first.heading_rad + turn_rad};
-}
-
 bool better(const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; }
 
 /// How much of a mode lies within 1 m of its pose, by its least certain direction on the floor: a
@@ -121,39 +117,6 @@ LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first
     sum.information += T.transpose() * here.information * T;
   }
   return sum;
-}
-
-/// A pose with what each look says of it, computed once.
-LineLocaliser::JudgedPose& LineLocaliser::judged(const Pose2D& pose, Query& query) const {
-  const auto known = query.judged.find(pose);
-  if (known != query.judged.end()) return known->second;
-  JudgedPose& judged = query.judged[pose];
-  for (const Seen& look : query.looks) {
-    const Pose2D at = turned(pose, look.turn_rad);
-    const MapPart part = map_part(at, query);
-    judged.of_looks.push_back(
-        place_evidence(look.view, *part.lines, part.pose_in_node, at, fine_agreement()));
-  }
-  return judged;
-}
-
-/// What all looks together tell one pose from another by.
-Evidence LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const {
-  constexpr double hopeless_nats = 100;
-  Evidence sum{a.score - b.score, 0, 0, 1};
-  if (sum.certain > hopeless_nats) return sum;
-  JudgedPose &at_a = judged(a.pose, query), &at_b = judged(b.pose, query);
-  const auto known = at_b.from.find(a.pose);
-  if (known != at_b.from.end()) return known->second;
-  for (std::size_t i = 0; i < query.looks.size(); ++i) {
-    const PlaceDifference difference = difference_between(query.looks[i].view, at_a.of_looks[i],
-                                                          at_b.of_looks[i], fine_agreement());
-    sum.certain -= difference.by_two_recordings;
-    sum.doubtful += difference.by_two_recordings;
-    sum.variance += difference.variance;
-    sum.repeated = std::min(sum.repeated, options_.repeats * difference.common);
-  }
-  return at_b.from[a.pose] = sum;
 }
 
 LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {

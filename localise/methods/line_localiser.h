@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
 #include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/place_evidence.h"
 #include "localise/verification/view_agreement.h"
 
 namespace vernier::localise::internal {
@@ -49,6 +51,7 @@ class LineLocaliser : public Localiser {
     Pose2D pose_in_node;
   };
   struct JudgedPose;
+  using Surroundings = std::vector<std::optional<PlacePrediction>>;
   /// Memory and intermediate results of one query.
   struct Query;
 
@@ -70,6 +73,8 @@ class LineLocaliser : public Localiser {
   bool is_plain(const Query& query) const;
   MapPart map_part(const Pose2D& pose, Query& query) const;
   JudgedPose& judged(const Pose2D& pose, Query& query) const;
+  Surroundings& surroundings(const Pose2D& pose, Query& query) const;
+  std::vector<LineLikeness> likenesses_around(const Pose2D& a, const Pose2D& b, Query& query) const;
   Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;

@@ -19,6 +19,11 @@
 
 namespace vernier::localise::internal {
 
+/// A pose of the first look, turned as another look is.
+inline Pose2D turned(const Pose2D& first, double turn_rad) {
+  return {first.x_m, first.y_m, first.heading_rad + turn_rad};
+}
+
 /// Poses that were tried. One that is close to another is taken for it.
 class TriedPoses {
  public:
@@ -51,6 +56,7 @@ struct PoseOrder {
 /// What each look says of a pose of the first, line by line, and what tells others from it.
 struct LineLocaliser::JudgedPose {
   std::vector<PlaceEvidence> of_looks;
+  Surroundings around;
   std::map<Pose2D, Evidence, PoseOrder> from;
 };
 

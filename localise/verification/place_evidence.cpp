@@ -37,6 +37,20 @@ double common_share(std::span<const LineLikeness> lines, const RecordingOptions&
   return share;
 }
 
+double probability_equal(std::span<const LineLikeness> view,
+                         std::span<const LineLikeness> around,
+                         const RecordingOptions& options) {
+  std::vector<LineLikeness> all(view.begin(), view.end());
+  all.insert(all.end(), around.begin(), around.end());
+  const double common = common_share(all, options);
+  double log_probability = 0;
+  for (const LineLikeness& line : view) {
+    log_probability += line.weight * std::log(probability_common(line.likeness, common, options));
+  }
+  // Equation (2). Each line is there twice, from either place.
+  return std::exp(log_probability / (2 * options.of_one_thing));
+}
+
 namespace {
 
 std::array<ImageLines*, 2> sets(PredictedLines& lines) { return {&lines.steep, &lines.flat}; }
@@ -76,11 +90,11 @@ bool are_one(const ImageLines& lines,
 /// world, it is no second recording: nothing.
 using Commons = std::array<std::vector<LineLikeness>, 2>;
 
-Commons likenesses(PlaceEvidence& place,
-                   PlaceEvidence& other_place,
+Commons likenesses(PlacePrediction& place,
+                   PlacePrediction& other_place,
                    const ViewCamera& camera,
                    const AgreementOptions& options) {
-  PredictedLines &lines = place.predicted, &others = other_place.predicted;
+  PredictedLines &lines = place.lines, &others = other_place.lines;
   Commons result;
   for (std::size_t set = 0; set < 2; ++set) {
     const ImageLines& own = *sets(lines)[set];
@@ -102,7 +116,22 @@ Commons likenesses(PlaceEvidence& place,
   return result;
 }
 
+std::vector<LineLikeness> of_both(const Commons& a, const Commons& b) {
+  std::vector<LineLikeness> lines;
+  for (const Commons* of : {&a, &b}) {
+    for (const auto& set : *of) lines.insert(lines.end(), set.begin(), set.end());
+  }
+  return lines;
+}
+
 }  // namespace
+
+std::vector<LineLikeness> likenesses_between(PlacePrediction& a,
+                                             PlacePrediction& b,
+                                             const ViewCamera& camera,
+                                             const AgreementOptions& options) {
+  return of_both(likenesses(a, b, camera, options), likenesses(b, a, camera, options));
+}
 
 PlaceEvidence place_evidence(const ComparedView& view,
                              const SpaceLines& lines,
@@ -110,16 +139,17 @@ PlaceEvidence place_evidence(const ComparedView& view,
                              const Pose2D& pose_in_map,
                              const AgreementOptions& options) {
   PlaceEvidence evidence;
-  evidence.pose_in_map = pose_in_map;
-  predict(lines, pose, view.camera, evidence.predicted);
+  evidence.predicted.pose_in_map = pose_in_map;
+  PredictedLines& recorded = evidence.predicted.lines;
+  predict(lines, pose, view.camera, recorded);
   evidence.seen.reserve(view.lines.size());
   for (const QueryLine& query : view.lines) {
-    ImageLines& partners = query.steep ? evidence.predicted.steep : evidence.predicted.flat;
+    ImageLines& partners = query.steep ? recorded.steep : recorded.flat;
     const LineMatch match = best_match(query, partners, view.camera, options.tolerance);
     evidence.seen.push_back({likelihood(match, options), match.line});
   }
   for (std::size_t set = 0; set < 2; ++set) {
-    const ImageLines& predicted = *sets(evidence.predicted)[set];
+    const ImageLines& predicted = *sets(recorded)[set];
     for (int i = 0; i < predicted.size; ++i) {
       evidence.missed[set].push_back(missed(predicted, i));
     }
@@ -130,10 +160,9 @@ PlaceEvidence place_evidence(const ComparedView& view,
 PlaceDifference difference_between(const ComparedView& view,
                                    PlaceEvidence& a,
                                    PlaceEvidence& b,
-                                   const AgreementOptions& options,
-                                   const RecordingOptions& recording) {
-  const Commons of_a = likenesses(a, b, view.camera, options);
-  const Commons of_b = likenesses(b, a, view.camera, options);
+                                   const AgreementOptions& options) {
+  const Commons of_a = likenesses(a.predicted, b.predicted, view.camera, options);
+  const Commons of_b = likenesses(b.predicted, a.predicted, view.camera, options);
   PlaceDifference difference;
   const auto add = [&](double nats, bool is_one) {
     (is_one ? difference.by_one_recording : difference.by_two_recordings) += nats;
@@ -162,11 +191,7 @@ PlaceDifference difference_between(const ComparedView& view,
       add(-left[i] * per_observation, of_b[set][i].is_one);
     }
   }
-  std::vector<LineLikeness> lines;
-  for (const Commons* of : {&of_a, &of_b}) {
-    for (const auto& set : *of) lines.insert(lines.end(), set.begin(), set.end());
-  }
-  difference.common = common_share(lines, recording);
+  difference.lines = of_both(of_a, of_b);
   return difference;
 }
 

@@ -140,8 +140,7 @@ TEST(CommonShare, IsTheOneThatDrewTheLines) {
       const bool kept = draws.uniform() < share && draws.uniform() >= options.lost;
       lines.push_back({kept || draws.uniform() < options.chance ? 1.0f : 0.0f, 1});
     }
-    // Chance is a density to it, and here a probability: 1 / (1 - chance) of the rest.
-    EXPECT_NEAR(common_share(lines, options), share, 0.06);
+    EXPECT_NEAR(common_share(lines, options), share, 0.03);
   }
   EXPECT_DOUBLE_EQ(common_share({}, options), 0.5);
 }
@@ -187,11 +186,11 @@ PlaceDifference said(const std::vector<PlaceLine>& view,
   return difference;
 }
 
-/// Probability of the first place, where places that look alike are equal with a probability.
+/// Probability of the first place, where places of which the map holds the same may be equal.
 double probability(const PlaceDifference& d, double repeats) {
-  return 1 / (1 + weight_against(
-                      {d.by_one_recording, d.by_two_recordings, d.variance, repeats * d.common},
-                      share));
+  const double equal = repeats * probability_equal(d.lines, {});
+  return 1 /
+         (1 + weight_against({d.by_one_recording, d.by_two_recordings, d.variance, equal}, share));
 }
 
 struct Answers {
@@ -222,6 +221,62 @@ TEST(PlaceEvidence, EqualPlacesStayOpen) {
       << by_scores.wrong << " of " << by_scores.all;
 }
 
+/// Lines of which a share is recorded anew at another place, from both.
+std::vector<LineLikeness> likenesses(double shared, int lines, std::uint64_t seed) {
+  std::vector<LineLikeness> drawn;
+  RandomStream draws({.seed = seed});
+  for (int i = 0; i < 2 * lines; ++i) {
+    const float of_shared = static_cast<float>(draws.uniform(0.7, 1));
+    drawn.push_back({draws.uniform() < shared ? of_shared : 0.0f, 2.5f});
+  }
+  return drawn;
+}
+
+// A view whose lines are all at another place says little by itself: where all else there differs,
+// a part of what it does not show well differs too.
+TEST(ProbabilityEqual, CountsWhatIsAround) {
+  const auto same = likenesses(1, 30, 3), most = likenesses(0.9, 30, 4);
+  const auto like = likenesses(0.98, 400, 5), unlike = likenesses(0.15, 400, 6);
+  EXPECT_GT(probability_equal(same, like), 0.95);
+  EXPECT_GT(probability_equal(most, like), 0.2);
+  EXPECT_LT(probability_equal(same, unlike), 0.1);
+  EXPECT_LT(probability_equal(most, unlike), 1e-3);
+  EXPECT_EQ(probability_equal({}, unlike), 1);  // a view of nothing is the same everywhere
+}
+
+// Oracle: things of one line each, of which the share is known by very many around. Then the
+// probability that all are common is the product of those of each, and things that were drawn with
+// that share are all common as often as stated; false-alarm rate 1e-3.
+TEST(ProbabilityEqual, IsThatOfAllThings) {
+  constexpr int draws = 2000, things = 4, known = 2000;
+  constexpr double false_alarm_z = 3.29;
+  for (const double common : {0.3, 0.8, 0.97}) {
+    const RecordingOptions options{0.2f, 0.1f, 1};
+    RandomStream d({.seed = 12});
+    const auto line = [&](bool is_common) {
+      const bool kept = is_common && d.uniform() >= options.lost;
+      return LineLikeness{kept || d.uniform() < options.chance ? 1.0f : 0.0f, 1};
+    };
+    std::vector<LineLikeness> around;
+    for (int i = 0; i < known; ++i) around.push_back(line(d.uniform() < common));
+    double excess = 0, variance = 0;
+    for (int i = 0; i < draws; ++i) {
+      std::vector<LineLikeness> view;
+      bool equal = true;
+      for (int thing = 0; thing < things; ++thing) {
+        const bool is_common = d.uniform() < common;
+        equal = equal && is_common;
+        const LineLikeness drawn = line(is_common);
+        view.insert(view.end(), {drawn, drawn});
+      }
+      const double stated = probability_equal(view, around, options);
+      excess += equal - stated;
+      variance += stated * (1 - stated);
+    }
+    EXPECT_LT(std::abs(excess), false_alarm_z * std::sqrt(variance)) << common;
+  }
+}
+
 // Other places are told apart although places may be equal.
 TEST(PlaceEvidence, OtherPlacesAreToldApart) {
   for (int i = 0; i < 100; ++i) {
@@ -230,7 +285,7 @@ TEST(PlaceEvidence, OtherPlacesAreToldApart) {
     const auto other = camera_view(test::random_room(5000 + i, 150)).lines;
     const PlaceDifference difference =
         said(recorded(room, 1, trial), recorded(room, 2, trial), recorded(other, 3, trial));
-    EXPECT_LT(difference.common, 0.6);
+    EXPECT_LT(probability_equal(difference.lines, {}), 1e-4);
     EXPECT_GT(probability(difference, 0.5), 0.999);
   }
 }

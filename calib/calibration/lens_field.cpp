@@ -11,17 +11,21 @@
 #include <optional>
 #include <variant>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/lens_models.h"
+#include "calib/pose.h"
 #include "calib/solver/initial_rig.h"
 #include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
 
 namespace vernier::internal {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
 /// Corners whose pixels are within do not mislead the start, whose focal length may be 10 % off.
-constexpr double surely_within_rad = 80 * degree;
+constexpr double surely_within_rad = 80 * 3.14159265358979323846 / 180;
 
 bool is_fisheye(const Camera& camera) { return std::holds_alternative<Fisheye4>(camera.model); }
 

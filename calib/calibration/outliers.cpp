@@ -97,14 +97,16 @@ BoardState redescending_minimum(const BoardObservations& observations,
 
 constexpr double rayleigh_median = 1.1774100225154747;  // of |r| / σ, √(2 ln 2)
 
-/// Robust standard deviation of a coordinate among the corners nearest to corner `i` on the board.
+/// Robust standard deviation of a coordinate among the corners nearest to corner `i` on the board,
+/// without those that are out.
 double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
                         const BoardView& view,
                         const std::vector<Eigen::Vector2d>& residuals,
+                        const std::vector<bool>& out,
                         std::size_t i) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < view.ids.size(); ++k) {
-    if (k == i) continue;
+    if (k == i || out[k]) continue;
     order.emplace_back((target_m[view.ids[k]] - target_m[view.ids[i]]).squaredNorm(), k);
   }
   const auto n = static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, order.size()));
@@ -127,10 +129,16 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
     const auto is_long = [&](const Eigen::Vector2d& r) { return r.norm() > beyond; };
     const auto longs = static_cast<std::size_t>(std::count_if(own.begin(), own.end(), is_long));
     std::vector<bool>& flag = flags.emplace_back(own.size(), 2 * longs > own.size());
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (flag[i] || !is_long(own[i])) continue;
-      const double sigma = neighbours_sigma(observations.target_m, observations.views[v], own, i);
-      flag[i] = own[i].norm() > limit * sigma;
+    // Wrong corners side by side hide each other, until those at the rim are out.
+    for (bool more = true; more;) {
+      const std::vector<bool> out = flag;
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        if (flag[i] || !is_long(own[i])) continue;
+        const double sigma =
+            neighbours_sigma(observations.target_m, observations.views[v], own, out, i);
+        flag[i] = own[i].norm() > limit * sigma;
+      }
+      more = flag != out;
     }
   }
   return flags;

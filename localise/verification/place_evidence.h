@@ -8,6 +8,7 @@
 
 #include "localise/place.h"
 #include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
 #include "localise/verification/image_lines.h"
 #include "localise/verification/view_agreement.h"
 

@@ -8,14 +8,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <locale>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
+#include "calib/base/toml_writer.h"
 #include "calib/error.h"
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_file.h"
@@ -212,10 +211,7 @@ std::string confirmation_text(const std::string& text,
     sweep.insert(std::string(searched_world), texts(settings.confirm_worlds));
   }
   if (!sweep.empty()) study.insert("sweep", std::move(sweep));
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out << "# Made by vernier tune: confirms " << candidate.label << "\n" << study << "\n";
-  return out.str();
+  return "# Made by vernier tune: confirms " + candidate.label + "\n" + toml_text(study);
 }
 
 }  // namespace vernier::sim::internal

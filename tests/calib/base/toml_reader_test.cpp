@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 
 #include "calib/base/toml_grammar.h"
+#include "calib/base/toml_writer.h"
 #include "tests/support/error_message.h"
 
 namespace vernier::internal {
@@ -61,6 +63,28 @@ TEST(TomlReader, RefusesJoinedLinesThatBeginBeyondAscii) {
 TEST(TomlReader, ShowsValues) {
   const toml::table root = parse_toml("a = [ 1, [-119.5, inf], true, 'x', {} ]", "a.toml");
   EXPECT_EQ(shown_value(*root.get("a")), "[1, [-119.5, inf], true, x, a table]");
+}
+
+// Property: what is written reads as the same, numbers to the bit.
+TEST(TomlWriter, WritesWhatItReads) {
+  const toml::table root = parse_toml(
+      "top = 'a \\ \"quoted\" text'\nlines = \"one\\ntwo\\t\\u0001\"\n"
+      "small = [1e-123, 0.05, -0.1, 5e-324, [nan], [], [{}]]\n"
+      "\"a.b\".\"c \\n d\" = [-0.0, 1e308, inf, -inf, 0.1, 3.0, 3, -9223372036854775808]\n"
+      "mixed = [{x = 1, y = {z = 'é'}}, true]\n[empty]\n[deep.er.est]\nk = false\n"
+      "[[many.tables]]\na = 1\n[many.tables.inner]\nb = 2.5\n[[many.tables]]\n",
+      "a.toml");
+  const std::string text = toml_text(root);
+  const toml::table again = parse_toml(text, "b.toml");
+  EXPECT_EQ(toml_text(again), text);
+  EXPECT_TRUE(std::isnan(again["small"][4][0].value<double>().value_or(0)));
+  EXPECT_EQ(again["small"][3].value<double>(), 5e-324);
+  EXPECT_EQ(again["a.b"]["c \n d"][4].value<double>(), 0.1);
+  EXPECT_EQ(again["lines"].value<std::string>(), "one\ntwo\t\x01");
+  EXPECT_EQ(again["many"]["tables"][0]["inner"]["b"].value<double>(), 2.5);
+  EXPECT_EQ(again["many"]["tables"].as_array()->size(), 2u);
+  EXPECT_TRUE(again["empty"].is_table());
+  EXPECT_TRUE(toml_text({}).empty());
 }
 
 TEST(TomlReader, RefusesDepth) {

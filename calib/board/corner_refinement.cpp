@@ -19,8 +19,9 @@ namespace vernier::internal {
 namespace {
 
 constexpr int min_half_window = 2;
-constexpr double min_contrast = 12;    // grey values in a corner's window
-constexpr double max_asymmetry = 0.3;  // of that contrast
+constexpr double always_within_px = 1;  // of small boards, whose guesses are no better
+constexpr double min_contrast = 12;     // grey values in a corner's window
+constexpr double max_asymmetry = 0.3;   // of that contrast
 constexpr std::size_t neighbours = 12;
 constexpr std::size_t min_neighbours = 8;
 
@@ -73,6 +74,11 @@ std::optional<CornerRejection> refine(const cv::Mat& grey, CornerGuess& guess) {
   if (half < min_half_window) return CornerRejection::at_border;
   const auto moved_to = refine_once(grey, guess.pixel_px, half);
   if (!moved_to) return CornerRejection::moved_too_far;
+  const Eigen::Vector2d moved_px = *moved_to - guess.pixel_px;
+  if (moved_px.norm() > always_within_px &&
+      (guess.px_per_m.inverse() * moved_px).norm() > guess.reach_m) {
+    return CornerRejection::moved_too_far;
+  }
   guess.pixel_px = *moved_to;
   guess.half_window_px = half;
   return std::nullopt;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct CornerGuess {
   int id = 0;
   Eigen::Vector2d pixel_px;
   int half_window_px = 2;
+  /// A corner that is refined further away than this on the board is another one.
+  double reach_m = std::numeric_limits<double>::infinity();
+  Eigen::Matrix2d px_per_m = Eigen::Matrix2d::Identity();  ///< of the board's image, for reach_m
 };
 
 /// Whether every corner is a crossing of squares. The corners of tags are, if the sheet has squares

@@ -29,9 +29,8 @@ constexpr std::size_t min_corners = 6;
 
 /// The largest window that contains nothing but the corner: `free_m` is the distance to the next
 /// edge of the pattern.
-int window_at(const Eigen::Matrix3d& H, const Eigen::Vector2d& corner_m, double free_m) {
-  const Eigen::Vector2d stretch =
-      Eigen::JacobiSVD<Eigen::Matrix2d>(map_derivative(H, corner_m)).singularValues();
+int window_at(const Eigen::Matrix2d& px_per_m, double free_m) {
+  const Eigen::Vector2d stretch = Eigen::JacobiSVD<Eigen::Matrix2d>(px_per_m).singularValues();
   return std::clamp(static_cast<int>(std::floor(0.9 * free_m * stretch[1] - 0.5)), 2, 11);
 }
 
@@ -194,6 +193,19 @@ std::array<int, 4> corners_of(const AprilTagGrid& grid, int tag) {
   return {first, first + 1, first + 2 * grid.columns, first + 2 * grid.columns + 1};
 }
 
+/// The corner of a marker that is nearest to a point of the board, as detected: within half the
+/// side of the squares between the tags, which touch its corners.
+Eigen::Vector2d seen_corner(const DetectedMarker& marker,
+                            const MarkerLayout& layout,
+                            const Eigen::Vector2d& point_m) {
+  const MarkerCorners& corners_m = layout.corners_m[marker.id];
+  const auto nearest = std::min_element(
+      corners_m.begin(), corners_m.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return (a - point_m).squaredNorm() < (b - point_m).squaredNorm();
+      });
+  return marker.corners_px[nearest - corners_m.begin()];
+}
+
 std::vector<Eigen::Vector2d> plane_points(const std::vector<Eigen::Vector3d>& target_m) {
   std::vector<Eigen::Vector2d> points;
   points.reserve(target_m.size());
@@ -219,7 +231,8 @@ void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDe
     if (!near(1, 0.8)) continue;  // neither adjacent marker was detected
     const auto H = near(4, 1.7);
     if (!H) continue;
-    guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
+    guesses.push_back(
+        {id, map_point(*H, points[id]), window_at(map_derivative(*H, points[id]), free_m)});
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::crossing, result);
   reject_too_few(target_m, name, result);
@@ -234,15 +247,19 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
   const int cells = marker_dictionary(found->layout.dictionary)->markerSize + 2 * border;
   const double free_m =
       grid.tag_m * std::min(double(border) / cells, grid.spacing / std::numbers::sqrt2);
+  const double reach_m = 0.5 * grid.spacing * grid.tag_m;  // half way to the next crossing
   const auto target_m = target_points(grid);
   const auto points = plane_points(target_m);
   std::vector<CornerGuess> guesses;
   for (const DetectedMarker& marker : found->seen.markers) {
     for (const int id : corners_of(grid, marker.id)) {
-      const auto H = homography_near(found->seen.markers, found->layout, points[id], 9,
+      const auto map = bent_map_near(found->seen.markers, found->layout, points[id], 9,
                                      2.3 * found->layout.pitch_m);
-      if (!H) continue;
-      guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
+      if (!map) continue;
+      const Eigen::Vector2d own_px = seen_corner(marker, found->layout, points[id]);
+      const double apart_m = (map->px_per_m.inverse() * (map->pixel_px - own_px)).norm();
+      guesses.push_back({id, apart_m > reach_m ? own_px : map->pixel_px,
+                         window_at(map->px_per_m, free_m), reach_m, map->px_per_m});
     }
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::as_most, result);

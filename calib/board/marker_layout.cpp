@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "calib/base/decompositions.h"
 #include "calib/board/marker_dictionary.h"
 #include "calib/board/plane_homography.h"
 #include "calib/board_target.h"
@@ -70,6 +71,27 @@ std::vector<std::pair<double, const DetectedMarker*>> by_distance(
   }
   std::sort(sorted.begin(), sorted.end());
   return sorted;
+}
+
+struct PointPairs {
+  std::vector<Eigen::Vector2d> from_m, to_px;
+};
+
+/// The corners of the up to `count` markers nearest to a point of the board, within `reach_m`.
+PointPairs corners_near(const std::vector<DetectedMarker>& markers,
+                        const MarkerLayout& layout,
+                        const Eigen::Vector2d& point_m,
+                        std::size_t count,
+                        double reach_m) {
+  PointPairs near;
+  for (const auto& [distance, marker] : by_distance(markers, layout, point_m)) {
+    if (near.from_m.size() >= 4 * count || distance > reach_m) break;
+    for (int k = 0; k < 4; ++k) {
+      near.from_m.push_back(layout.corners_m[marker->id][k]);
+      near.to_px.push_back(marker->corners_px[k]);
+    }
+  }
+  return near;
 }
 
 /// Whether b is where a predicts it.
@@ -247,15 +269,33 @@ std::optional<Eigen::Matrix3d> homography_near(const std::vector<DetectedMarker>
                                                const Eigen::Vector2d& point_m,
                                                std::size_t count,
                                                double reach_m) {
-  std::vector<Eigen::Vector2d> from, to;
-  for (const auto& [distance, marker] : by_distance(markers, layout, point_m)) {
-    if (from.size() >= 4 * count || distance > reach_m) break;
-    for (int k = 0; k < 4; ++k) {
-      from.push_back(layout.corners_m[marker->id][k]);
-      to.push_back(marker->corners_px[k]);
-    }
+  const PointPairs near = corners_near(markers, layout, point_m, count, reach_m);
+  return fit_homography(near.from_m, near.to_px);
+}
+
+std::optional<LocalMap> bent_map_near(const std::vector<DetectedMarker>& markers,
+                                      const MarkerLayout& layout,
+                                      const Eigen::Vector2d& point_m,
+                                      std::size_t count,
+                                      double reach_m) {
+  const PointPairs near = corners_near(markers, layout, point_m, count, reach_m);
+  const auto H = fit_homography(near.from_m, near.to_px);
+  if (!H) return std::nullopt;
+  // Residuals as a polynomial of the offset from the point, in units of the pitch.
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6, 6), b = Eigen::MatrixXd::Zero(6, 2);
+  for (std::size_t i = 0; i < near.from_m.size(); ++i) {
+    const Eigen::Vector2d d = (near.from_m[i] - point_m) / layout.pitch_m;
+    Eigen::Matrix<double, 6, 1> powers;
+    powers << 1, d.x(), d.y(), d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
+    const double weight = std::exp(-d.squaredNorm());  // nearer ones more
+    A += weight * powers * powers.transpose();
+    b += weight * powers * (near.to_px[i] - map_point(*H, near.from_m[i])).transpose();
   }
-  return fit_homography(from, to);
+  constexpr double ridge = 1e-4;  // markers in one row do not determine all powers
+  A.diagonal().array() += ridge * A.trace();
+  const Eigen::MatrixXd bend = Cholesky(A).solve(b);
+  return LocalMap{map_point(*H, point_m) + bend.row(0).transpose(),
+                  map_derivative(*H, point_m) + bend.middleRows(1, 2).transpose() / layout.pitch_m};
 }
 
 void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, DetectedMarkers& seen) {

@@ -63,4 +63,19 @@ std::optional<Eigen::Matrix3d> homography_near(const std::vector<DetectedMarker>
                                                std::size_t count,
                                                double reach_m);
 
+/// The image of a point of the board and the derivative there.
+struct LocalMap {
+  Eigen::Vector2d pixel_px;
+  Eigen::Matrix2d px_per_m;
+};
+
+/// As homography_near, with what lens distortion adds to the homography: a polynomial of second
+/// degree, fitted to the markers' residuals. Over nine tags a wide lens bends a homography by
+/// more than the squares between the tags.
+std::optional<LocalMap> bent_map_near(const std::vector<DetectedMarker>& markers,
+                                      const MarkerLayout& layout,
+                                      const Eigen::Vector2d& point_m,
+                                      std::size_t count,
+                                      double reach_m);
+
 }  // namespace vernier::internal

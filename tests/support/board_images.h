@@ -12,24 +12,27 @@
 
 namespace vernier::test {
 
-/// A camera before a board's plane z = 0: pinhole with one radial coefficient.
+/// A camera before a board's plane z = 0: pinhole with one radial coefficient, or equidistant.
 struct BoardCamera {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< T_camera_board
   Eigen::Vector3d t{0, 0, 1};
   double f_px = 525, k1 = 0;
   int width_px = 640, height_px = 480;
+  bool fisheye = false;  ///< radius proportional to the angle from the axis; k1 is not used
 
   Eigen::Vector2d centre() const { return {0.5 * (width_px - 1), 0.5 * (height_px - 1)}; }
 
   Eigen::Vector2d pixel_of(const Eigen::Vector3d& X) const {
     const Eigen::Vector2d x = (R * X + t).hnormalized();
+    if (fisheye) return f_px * std::atan(x.norm()) * x.normalized() + centre();
     return f_px * (1 + k1 * x.squaredNorm()) * x + centre();
   }
 
   Eigen::Vector2d board_point_at(const Eigen::Vector2d& pixel) const {
     const Eigen::Vector2d d = (pixel - centre()) / f_px;
     Eigen::Vector2d x = d;
-    for (int i = 0; k1 != 0 && i < 30; ++i) x = d / (1 + k1 * x.squaredNorm());
+    for (int i = 0; k1 != 0 && i < 30 && !fisheye; ++i) x = d / (1 + k1 * x.squaredNorm());
+    if (fisheye) x = std::tan(d.norm()) * d.normalized();
     Eigen::Matrix3d H;  // columns of R for x and y, and t: plane to camera
     H << R.col(0), R.col(1), t;
     return (H.inverse() * x.homogeneous()).hnormalized();

@@ -96,5 +96,28 @@ TEST(MarkerCorners, ACornerRefinedBeyondItsReachIsAnother) {
   }
 }
 
+// Many quadrilaterals beside the board, which make the first of OpenCV's finders slow: it is left
+// out only where there is no board.
+TEST(ChessboardFinder, FindsABoardBesideAGridOfTags) {
+  const Chessboard board{9, 6, 0.03};
+  const auto points = target_points(board);
+  const BoardCamera before_board =
+      test::camera_before(0.5 * (points.front() + points.back()).head<2>(), 0.4, 0.2, 0.2, 0.1);
+  const cv::Mat chess = test::photograph(test::draw(board), before_board);
+  const auto corners = target_points(april);
+  const cv::Mat tags = test::photograph(
+      test::draw(april, 2), test::camera_before(0.5 * (corners.front() + corners.back()).head<2>(),
+                                                1.2, std::numbers::pi, 0, 0));
+  EXPECT_NE(detect(tags, board).reason.find("no 9x6 board found"), std::string::npos);
+  cv::Mat both;
+  cv::hconcat(chess, tags, both);
+  const BoardDetection alone = detect(chess, board), beside = detect(both, board);
+  ASSERT_FALSE(alone.ids.empty()) << alone.reason;
+  ASSERT_EQ(beside.ids, alone.ids) << beside.reason;
+  for (std::size_t i = 0; i < alone.ids.size(); ++i) {
+    EXPECT_LT((beside.corners_px[i] - alone.corners_px[i]).norm(), 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace vernier

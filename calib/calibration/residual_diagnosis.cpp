@@ -68,9 +68,11 @@ class Diagnosis {
 
   std::vector<ResidualFinding> run() {
     if (!(sum_px2_ > 0)) return {};
-    check_lens();
+    const double by_lens = check_lens();
     check_board();
-    if (!check_change()) check_simultaneity();
+    // Poses that do not agree by a wrong lens need not be wrong.
+    constexpr double nearly_all = 0.95;
+    if (by_lens < nearly_all && !check_change()) check_simultaneity();
     check_images();
     check_cameras();
     std::erase_if(findings_, [&](const auto& f) { return f.share < options_.min_share; });
@@ -143,14 +145,15 @@ class Diagnosis {
            std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
   }
 
-  void check_lens() {
-    if (!is_free()) return;
+  /// The share that another lens explains.
+  double check_lens() {
+    if (!is_free()) return 0;
     std::set<std::string_view> tried;
     for (const CameraModel& model : models_of(state_.rig)) tried.insert(model_name(model));
     std::optional<Trial> best;
     std::string_view best_name;
     for (const CameraModel& model :
-         {CameraModel{OpenCv5{}}, CameraModel{OpenCv8{}}, CameraModel{Fisheye4{}}}) {
+         {CameraModel{OpenCv5{}}, CameraModel{Fisheye4{}}, CameraModel{OpenCv8{}}}) {
       if (tried.contains(model_name(model))) continue;
       const std::optional<Trial> trial = with_model(model);
       // a richer model must be worth its coefficients
@@ -158,7 +161,7 @@ class Diagnosis {
       best = trial;
       best_name = model_name(model);
     }
-    if (!best) return;
+    if (!best) return 0;
     findings_.push_back(
         {fraction_explained(best->sum_px2),
          fmt::format("the lens needs another model: {} fits the same corners to {:.2f} px instead "
@@ -167,6 +170,7 @@ class Diagnosis {
                      best_name, rms_of(best->sum_px2, corners_), rms(),
                      std::abs(outward_at_edge_px()), outward_at_edge_px() > 0 ? "out" : "in",
                      best_name)});
+    return findings_.back().share;
   }
 
   void check_board() {

@@ -64,6 +64,7 @@ TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
   // follow the advice
   const std::string name = found.first().substr(found.first().rfind(' ') + 1);
   const RigEstimate better = calibrate(seen, {.model = camera_model(name)});
+  EXPECT_EQ(name, "fisheye4");
   EXPECT_LT(better.calibration->rms_px, 0.25) << name;
   EXPECT_TRUE(better.calibration->trust_warnings.empty());
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@
 
 #include "calib/base/error_place.h"
 #include "calib/base/output_files.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -91,6 +93,11 @@ struct Rectified {
   VerticalField field;
 };
 
+int most_disparity_px(const RectifiedGeometry& geometry, const RectifyArguments& options) {
+  return options.max_disparity_px > 0 ? options.max_disparity_px
+                                      : geometry.size_px[0] / width_by_disparity;
+}
+
 Rectified rectify(const Rig& rig,
                   const RectifiedGeometry& geometry,
                   const GreyLevels& left,
@@ -99,10 +106,31 @@ Rectified rectify(const Rig& rig,
   Rectified r;
   r.geometry = geometry;
   r.images = rectified_images(rig, r.geometry, left, right, options.threads);
-  const int most = options.max_disparity_px > 0 ? options.max_disparity_px
-                                                : r.geometry.size_px[0] / width_by_disparity;
-  r.field = vertical_field(r.images, {0, most}, options.field);
+  r.field = vertical_field(r.images, {0, most_disparity_px(geometry, options)}, options.field);
   return r;
+}
+
+/// What else may be the reason where the axes of the cameras meet at a disparity that is not
+/// searched: of a rig that converges, what both see in the middle of their images.
+std::string convergence(const Rig& rig,
+                        const RectifiedGeometry& geometry,
+                        const RectifyArguments& options) {
+  constexpr double degrees = 180 / 3.14159265358979323846;
+  std::array<std::optional<Eigen::Vector2d>, 2> middle;
+  for (int c = 0; c < 2; ++c) {
+    const Camera& camera = rig.cameras[c];
+    middle[c] = rectified_pixel(rig, geometry, c, {camera.ox_px(), camera.oy_px()});
+  }
+  if (!middle[0] || !middle[1]) return "";
+  const double disparity_px = middle[0]->x() - middle[1]->x();
+  if (disparity_px <= most_disparity_px(geometry, options)) return "";
+  const double cosine = rig.T_camera_first[1].R(2, 2);  // of the angle between the axes
+  return fmt::format(
+      ". The cameras converge by {:.0f} degrees: what is in the middle of both has a disparity of "
+      "{:.0f} px here, beyond the {} px that were searched; give a larger --max-disparity, and a "
+      "smaller --f-px with a wider --size, so that both images keep it",
+      degrees * std::acos(std::clamp(cosine, -1.0, 1.0)), disparity_px,
+      most_disparity_px(geometry, options));
 }
 
 /// Adds trust warnings if the rows are not aligned.
@@ -126,7 +154,8 @@ void check_alignment(const Rectified& rectified,
   }
   if (!field.unrectified && !field.known) {
     const std::string words =
-        "row alignment of the rectified images could not be checked: " + describe(field);
+        "row alignment of the rectified images could not be checked: " + describe(field) +
+        convergence(rig, rectified.geometry, options);
     if (field.corners == 0) {
       session.add_trust_warning(words);
     } else {
@@ -150,7 +179,8 @@ void check_alignment(const Rectified& rectified,
   }
   session.add_trust_warning("the rows of the rectified images are not aligned: " + describe(field) +
                             "; check that the rig matches the current cameras, that the images are "
-                            "simultaneous and that --max-disparity is large enough");
+                            "simultaneous and that --max-disparity is large enough" +
+                            convergence(rig, rectified.geometry, options));
 }
 
 std::string png(const GreyLevels& image) {

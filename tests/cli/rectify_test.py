@@ -160,6 +160,21 @@ class Rectify(CalibratedCase):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn('left and right appear to be swapped', json.loads(done.stdout)['doubts'][0])
 
+    def test_cameras_that_converge_are_told(self):
+        """50 degrees: where the axes meet has a disparity above the range that is searched."""
+        def change(rig):
+            angle = math.radians(50)
+            rig['cameras'][1]['from_first'] = {
+                'rotation_rad': [0, angle, 0],
+                'translation_m': [-0.8 * math.cos(angle / 2), 0, 0.8 * math.sin(angle / 2)]}
+            for key in ('parameters', 'parameter_names', 'covariance', 'calibration', 'evidence'):
+                rig.pop(key, None)
+        rig = self.changed_rig('converging.json', change)
+        done = cli_test.vernier(*self.arguments(rig=rig))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r'converge by 50 degrees: .* disparity of \d+ px here, beyond '
+                                      r'the 160 px that were searched; give a larger --max-disparity')
+
     def test_complaints(self):
         out = self.folder / 'rectified'
 

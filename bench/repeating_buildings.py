@@ -4,7 +4,7 @@
 """What `lines` states of its errors, and how often it is wrong, in buildings that repeat: a hall whose
 contents are the same after half a turn, a corridor of equal doors, and a hall of bays that are furnished alike.
 
-    repeating_buildings.py PROGRAM [--trials 300] [--seed 1] [--halls 1] [--corridors 20x40] [--bays 1x5] [--repeats 0]
+    repeating_buildings.py PROGRAM [--trials 300] [--seed 1] [--halls 1] [--corridors 20x40] [--bays 1x5] [--repeats P]
 
 Prints a line for each building, kind of map and stated error: queries answered, and of these wrong.
 """
@@ -112,7 +112,7 @@ def main():
     parser.add_argument('program')
     parser.add_argument('--trials', type=int, default=300, help='queries a building, map and rate')
     parser.add_argument('--seed', type=int, default=1, help='of the studies')
-    parser.add_argument('--repeats', type=float, default=0, help='localiser.repeats')
+    parser.add_argument('--repeats', type=float, help="localiser.repeats (default: the program's)")
     parser.add_argument('--halls', default='1', help='seeds of halls, as 1,4-6')
     parser.add_argument('--corridors', default='20x40', help='doors a side x length in metres')
     parser.add_argument('--bays', default='1x5', help='seed x number of bays')
@@ -120,7 +120,7 @@ def main():
     program = str(pathlib.Path(options.program).resolve())
     print(f'{"building":<16}{"headings":>10}{"stated %":>10}{"answered":>10}{"wrong":>8}{"wrong %":>9}{"best %":>9}')
     totals = {}
-    prior = f'[localiser]\nrepeats = {options.repeats}\n' if options.repeats else ''
+    prior = '' if options.repeats is None else f'[localiser]\nrepeats = {options.repeats}\n'
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for building, mesh in buildings(options):

@@ -90,7 +90,7 @@ struct LocaliserOptions {
   /// What `lines` takes for the probability, before it looks, that two places of which the map
   /// holds the same lines, there and around, are equal, so that their recordings differ by errors
   /// alone; below 1. 0: what the map holds tells all places apart.
-  double repeats = 0.1;
+  double repeats = 0.01;
   LocaliserStages stages;
   /// `corners` answers if so many corners agree at least; from 4.
   int min_corners = 8;

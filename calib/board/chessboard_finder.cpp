@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board/chessboard_finder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -163,49 +165,65 @@ std::optional<CornerGrid> find_any_grid(const cv::Mat& grey) {
   return grid;
 }
 
-/// Dark shapes of four sides in the image, as findChessboardCorners joins to a board.
-int dark_quadrilaterals(const cv::Mat& grey) {
-  constexpr double least_area_px = 25, straight = 0.08;  // of the shape's perimeter
-  cv::Mat bright;
-  const int block = (std::min(grey.cols, grey.rows) / 5) | 1;
-  cv::adaptiveThreshold(grey, bright, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY,
-                        std::max(3, block), 5);
-  cv::dilate(bright, bright, {});
-  std::vector<std::vector<cv::Point>> outlines;
-  std::vector<cv::Vec4i> places;
-  cv::findContours(bright, outlines, places, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
-  int count = 0;
-  for (std::size_t i = 0; i < outlines.size(); ++i) {
-    const bool dark = places[i][3] >= 0;  // a hole in what is bright
-    if (!dark || cv::contourArea(outlines[i]) < least_area_px) continue;
-    std::vector<cv::Point> sides;
-    cv::approxPolyDP(outlines[i], sides, straight * cv::arcLength(outlines[i], true), true);
-    count += sides.size() == 4;
+/// Dark specks of an image as findChessboardCorners binarises it: white is where a pixel is
+/// brighter than the mean of its neighbourhood, and every dark speck in it may be a square.
+int dark_specks(const cv::Mat& grey) {
+  constexpr int least_area_px2 = 25;  // of its box, as in OpenCV
+  cv::Mat equal, dark, labels, boxes, centres;
+  cv::equalizeHist(grey, equal);
+  const int block = std::max(3, cvRound(0.2 * std::min(grey.cols, grey.rows)) | 1);
+  cv::adaptiveThreshold(equal, dark, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, block,
+                        0);
+  const int regions = cv::connectedComponentsWithStats(dark, labels, boxes, centres, 4);
+  int specks = 0;
+  for (int i = 1; i < regions; ++i) {  // 0 is what is white
+    specks += boxes.at<int>(i, cv::CC_STAT_WIDTH) * boxes.at<int>(i, cv::CC_STAT_HEIGHT) >=
+              least_area_px2;
   }
-  return count;
+  return specks;
 }
 
-/// findChessboardCorners first, whose corners all results are from; it takes 20 s for an image that
-/// holds many more quadrilaterals than the board, such as a grid of tags. There it has to be
-/// worthwhile: the other finder, of some 0.3 s, finds the board or half of as many corners in a
-/// grid.
-bool find_corners(const cv::Mat& grey, CornerGrid& grid) {
-  constexpr int usual_others = 30;
-  const cv::Size size(grid.columns, grid.rows);
-  const auto by_saddles = [&] {
-    return cv::findChessboardCornersSB(grey, size, grid.corners,
-                                       cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
-  };
-  const int dark_squares = (grid.columns + 1) * (grid.rows + 1) / 2;
-  if (dark_quadrilaterals(grey) > dark_squares + usual_others && !by_saddles()) {
-    const std::optional<CornerGrid> any = find_any_grid(grey);
-    if (!any || 2 * any->corners.size() < static_cast<std::size_t>(size.area())) return false;
+/// The image in which findChessboardCorners is to search.
+struct SearchedImage {
+  cv::Mat grey;        ///< empty if no smoothing helps
+  double blur_px = 0;  ///< standard deviation; 0: the image itself
+};
+
+/// The image itself, or where its noise or texture has very many specks, smoothed until it has few.
+SearchedImage searched_image(const cv::Mat& grey, const CornerGrid& grid) {
+  // The time without a board grows with the square of their number: 1 to 2 s at 1000, 2 to 6 s at
+  // 1500, 20 to 60 s at 4000. Smoothing loses squares of less than some 12 px; an image of 480 x
+  // 360, where boards have such, has no room for more than 1500 specks.
+  constexpr int most_as_it_is = 1500, most_smoothed = 1000;
+  const int expected = 2 * (grid.columns + 1) * (grid.rows + 1);
+  if (dark_specks(grey) <= std::max(most_as_it_is, expected)) return {grey, 0};
+  for (const double blur_px : {0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0}) {
+    cv::Mat smooth;
+    cv::GaussianBlur(grey, smooth, {0, 0}, blur_px);
+    if (dark_specks(smooth) <= std::max(most_smoothed, expected)) return {smooth, blur_px};
   }
-  if (cv::findChessboardCorners(grey, size, grid.corners,
+  return {};
+}
+
+bool find_corners(const cv::Mat& grey, const SearchedImage& searched, CornerGrid& grid) {
+  const cv::Size size(grid.columns, grid.rows);
+  if (!searched.grey.empty() &&
+      cv::findChessboardCorners(searched.grey, size, grid.corners,
                                 cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
     return true;
   }
-  return by_saddles();
+  return cv::findChessboardCornersSB(grey, size, grid.corners,
+                                     cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+}
+
+/// How the search was shortened, for the reason; empty if it was not.
+std::string search_text(const SearchedImage& searched) {
+  if (searched.grey.empty()) {
+    return "; its noise or texture is so strong that one of two searches was left out";
+  }
+  if (searched.blur_px == 0) return "";
+  return "; because of its noise or texture one of two searches was in a copy smoothed by " +
+         fmt::format("{:.1f} px", searched.blur_px);
 }
 
 std::string grid_text(int columns, int rows) {
@@ -260,8 +278,9 @@ std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetectio
 
 void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
   CornerGrid grid{board.columns, board.rows, {}};
-  if (!find_corners(grey, grid)) {
-    result.reason = fault_of(grey, board, result);
+  const SearchedImage searched = searched_image(grey, grid);
+  if (!find_corners(grey, searched, grid)) {
+    result.reason = fault_of(grey, board, result) + search_text(searched);
     return;
   }
   if (goes_on(grey, grid)) {

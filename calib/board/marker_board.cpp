@@ -247,13 +247,16 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
   const int cells = marker_dictionary(found->layout.dictionary)->markerSize + 2 * border;
   const double free_m =
       grid.tag_m * std::min(double(border) / cells, grid.spacing / std::numbers::sqrt2);
+  // Its own tag and those around it: they determine the six powers of the map in both directions,
+  // and reach little further than a pitch and a half, where these describe what a lens does.
+  constexpr std::size_t around = 9;
   const double reach_m = 0.5 * grid.spacing * grid.tag_m;  // half way to the next crossing
   const auto target_m = target_points(grid);
   const auto points = plane_points(target_m);
   std::vector<CornerGuess> guesses;
   for (const DetectedMarker& marker : found->seen.markers) {
     for (const int id : corners_of(grid, marker.id)) {
-      const auto map = bent_map_near(found->seen.markers, found->layout, points[id], 9,
+      const auto map = bent_map_near(found->seen.markers, found->layout, points[id], around,
                                      2.3 * found->layout.pitch_m);
       if (!map) continue;
       const Eigen::Vector2d own_px = seen_corner(marker, found->layout, points[id]);

@@ -11,11 +11,14 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "calib/board/board_homography.h"
 #include "calib/board/corner_difference.h"
+#include "calib/board/nearest_corners.h"
 #include "calib/board_observations.h"
 #include "calib/error.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -24,6 +27,10 @@ constexpr double same_image_px = 1e-3;    // of one camera: a copy
 constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps compressed again
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
+// A lens bends three by three corners by at most 0.12 of their spacing up to 85 degrees from its
+// axis; one row in nine reversed, or numbered from the next corner on, leaves a sixth of the
+// corners and more above twice that.
+constexpr double local_misfit_spacings = 0.25, local_misfit_share = 0.15;
 
 /// Distance between neighbouring corners in the image: that on the target, times the square root of
 /// the area magnification at the centre of the view's corners.
@@ -37,12 +44,51 @@ double corner_spacing_px(const BoardHomography& view,
   return least * std::sqrt(std::abs(view.H.determinant()));  // d(u, v)/d(X, Y) at the centre
 }
 
+/// Distance (px) of each corner from the nearest other one, whatever their numbers are.
+std::vector<double> nearest_px(const BoardView& view) {
+  std::vector<double> least(view.ids.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < view.ids.size(); ++i) {
+    for (std::size_t k = 0; k < view.ids.size(); ++k) {
+      if (k == i) continue;
+      least[i] = std::min(least[i], (view.pixels_px[k] - view.pixels_px[i]).norm());
+    }
+  }
+  return least;
+}
+
+/// The share of the corners that do not fit a homography with their eight neighbours on the board:
+/// few where a wide lens bends the board as a whole, many where corners are numbered wrongly.
+double share_unlike_neighbours(const std::vector<Eigen::Vector3d>& target_m,
+                               const BoardView& view) {
+  const std::vector<double> spacings_px = nearest_px(view);
+  int unlike = 0, judged = 0;
+  for (std::size_t i = 0; i < view.ids.size(); ++i) {
+    std::vector<std::size_t> places = nearest_corners(target_m, view, i, 8);
+    places.push_back(i);
+    BoardView near{view.frame, view.camera, view.image, {}, {}};
+    std::vector<double> spacing_px;
+    for (const std::size_t k : places) {
+      near.ids.push_back(view.ids[k]);
+      near.pixels_px.push_back(view.pixels_px[k]);
+      spacing_px.push_back(spacings_px[k]);
+    }
+    if (near.ids.size() < 6 || !determines_pose(target_m, near.ids)) continue;  // 5 fit almost any
+    ++judged;
+    const double limit_px = local_misfit_spacings * median_or_zero(std::move(spacing_px));
+    unlike += !(board_homography(target_m, near).rms_px <= limit_px);
+  }
+  return judged == 0 ? 1 : static_cast<double>(unlike) / judged;
+}
+
 void check_grids(const BoardObservations& observations,
                  const std::vector<BoardHomography>& homographies) {
   for (std::size_t i = 0; i < homographies.size(); ++i) {
     const double spacing = corner_spacing_px(homographies[i], observations.target_m);
-    if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing))
+    if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing) ||
+        share_unlike_neighbours(observations.target_m, observations.views[i]) <=
+            local_misfit_share) {
       continue;
+    }
     throw Error(
         view_label(observations.views[i]),
         fmt::format("its corners do not fit a flat board (residual {:.0f} px at a corner spacing "

@@ -14,6 +14,7 @@
 
 #include "calib/board/board_pose.h"
 #include "calib/board/board_warp.h"
+#include "calib/board/nearest_corners.h"
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -97,23 +98,36 @@ BoardState redescending_minimum(const BoardObservations& observations,
 
 constexpr double rayleigh_median = 1.1774100225154747;  // of |r| / σ, √(2 ln 2)
 
-/// Robust standard deviation of a coordinate among the corners nearest to corner `i` on the board,
-/// without those that are out.
-double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
-                        const BoardView& view,
-                        const std::vector<Eigen::Vector2d>& residuals,
-                        const std::vector<bool>& out,
-                        std::size_t i) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < view.ids.size(); ++k) {
-    if (k == i || out[k]) continue;
-    order.emplace_back((target_m[view.ids[k]] - target_m[view.ids[i]]).squaredNorm(), k);
-  }
-  const auto n = static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, order.size()));
-  std::partial_sort(order.begin(), order.begin() + n, order.end());
+/// Whether corner `i` stands out from its neighbours that are not out: its residual is longer than
+/// `limit` of their robust standard deviations of a coordinate.
+bool stands_out(const std::vector<Eigen::Vector2d>& residuals,
+                const std::vector<std::size_t>& neighbours,
+                std::size_t i,
+                double limit) {
   std::vector<double> lengths;
-  for (std::ptrdiff_t k = 0; k < n; ++k) lengths.push_back(residuals[order[k].second].norm());
-  return median_or_zero(std::move(lengths)) / rayleigh_median;
+  for (const std::size_t k : neighbours) lengths.push_back(residuals[k].norm());
+  return residuals[i].norm() > limit * median_or_zero(std::move(lengths)) / rayleigh_median;
+}
+
+/// Whether corner `i` belongs to a cluster of wrong corners, of which some are out: it is moved
+/// like one of these, and each neighbour is moved like it or quite differently. Where a lens that
+/// the model does not fit moves corners more and more towards the edge of the image, there are
+/// some in between.
+bool is_in_cluster(const std::vector<Eigen::Vector2d>& residuals,
+                   const std::vector<std::size_t>& all_neighbours,
+                   const std::vector<bool>& out,
+                   std::size_t i) {
+  // Of the residual's length. A shift by a square differs by some per cent from corner to corner;
+  // noise, at most a sixth of the residual, adds to that.
+  constexpr double alike = 0.3, unlike = 0.7;
+  const double length = residuals[i].norm();
+  bool like_one_out = false;
+  for (const std::size_t k : all_neighbours) {
+    const double apart = (residuals[k] - residuals[i]).norm();
+    like_one_out = like_one_out || (out[k] && apart < alike * length);
+    if (apart >= alike * length && apart <= unlike * length) return false;
+  }
+  return like_one_out;
 }
 
 /// One flag per corner of every view.
@@ -124,19 +138,23 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
   const std::vector<double> sigmas = camera_sigmas(observations, residuals);
   std::vector<std::vector<bool>> flags;
   for (std::size_t v = 0; v < residuals.size(); ++v) {
-    const double beyond = limit * sigmas[static_cast<std::size_t>(observations.views[v].camera)];
+    const BoardView& view = observations.views[v];
+    const double beyond = limit * sigmas[static_cast<std::size_t>(view.camera)];
     const std::vector<Eigen::Vector2d>& own = residuals[v];
     const auto is_long = [&](const Eigen::Vector2d& r) { return r.norm() > beyond; };
     const auto longs = static_cast<std::size_t>(std::count_if(own.begin(), own.end(), is_long));
     std::vector<bool>& flag = flags.emplace_back(own.size(), 2 * longs > own.size());
+    const auto neighbours = [&](std::size_t i, const std::vector<bool>& out) {
+      return nearest_corners(observations.target_m, view, i, 8, out);
+    };
     // Wrong corners side by side hide each other, until those at the rim are out.
-    for (bool more = true; more;) {
+    bool first = true;
+    for (bool more = true; more; first = false) {
       const std::vector<bool> out = flag;
       for (std::size_t i = 0; i < own.size(); ++i) {
         if (flag[i] || !is_long(own[i])) continue;
-        const double sigma =
-            neighbours_sigma(observations.target_m, observations.views[v], own, out, i);
-        flag[i] = own[i].norm() > limit * sigma;
+        flag[i] = stands_out(own, neighbours(i, out), i, limit) &&
+                  (first || is_in_cluster(own, neighbours(i, {}), out, i));
       }
       more = flag != out;
     }

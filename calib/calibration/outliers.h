@@ -51,7 +51,10 @@ bool place_outlying_boards(const BoardObservations& observations,
 ///
 /// A corner is an outlier if its residual is longer than `limit` standard deviations: the larger of
 /// the robust one of its camera's corners and that of its eight neighbours on the board (a lens
-/// that the model does not fit moves neighbours too, which is no reason to exclude corners). A view
+/// that the model does not fit moves neighbours too, which is no reason to exclude corners).
+/// Neighbours that are outliers are then replaced by the next ones, until no further corner stands
+/// out that is moved like an outlier beside it and has no neighbour moved by part of that: wrong
+/// corners side by side hide each other, a lens moves corners by degrees. A view
 /// is an outlier if most of its residuals are that long, or if the rest of it does not determine a
 /// pose. With 6, a corner with normal error is lost once in 6e7.
 RobustFit outliers_at(const BoardObservations& observations,

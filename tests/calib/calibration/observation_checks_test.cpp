@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "calib/board/board_homography.h"
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "calib/camera.h"
@@ -18,6 +20,7 @@
 #include "tests/support/board_defects.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
+#include "tests/support/wide_views.h"
 
 namespace vernier {
 
@@ -175,6 +178,62 @@ TEST_F(ObservationChecks, TiltedBoardsBeforeAWideLensPass) {
   }
   EXPECT_GT(seen.views.size(), 20u);
   EXPECT_EQ(complaint_of(seen), "");
+}
+
+// So near that the board reaches from the middle of the image to 85 degrees: the residual of a
+// homography is half the spacing of the corners.
+TEST_F(ObservationChecks, ABoardThatAWideLensBendsByHalfASquarePasses) {
+  int bent = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const BoardObservations seen =
+        test::wide_views(test::wide_rig(), {.most_deg = 85, .seed = seed}).observations;
+    for (const BoardView& view : seen.views) {
+      bent += board_homography(seen.target_m, view).rms_px > 18;
+    }
+    EXPECT_EQ(complaint_of(seen), "");
+  }
+  EXPECT_GT(bent, 1);
+}
+
+// In one view of a wide lens, which bends boards, and of a narrow one.
+TEST_F(ObservationChecks, WrongNumberingIsNamedBeforeAnyLens) {
+  const BoardObservations wide =
+      test::wide_views(test::wide_rig(), {.most_deg = 75, .seed = 2}).observations;
+  const auto reverse_rows = [](BoardView& view, int columns, int first, int step) {
+    std::map<int, Eigen::Vector2d> pixel;
+    for (std::size_t i = 0; i < view.ids.size(); ++i) pixel[view.ids[i]] = view.pixels_px[i];
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      const int row = view.ids[i] / columns, column = view.ids[i] % columns;
+      if (row < first || (row - first) % step != 0) continue;
+      view.pixels_px[i] = pixel.at(row * columns + columns - 1 - column);
+    }
+  };
+  for (const BoardObservations& good : {good_, wide}) {
+    const int columns = good.target_m.size() == 54 ? 9 : 12;
+    const std::size_t v =
+        static_cast<std::size_t>(std::find_if(good.views.begin() + 2, good.views.end(),
+                                              [&](const BoardView& view) {
+                                                return view.ids.size() == good.target_m.size();
+                                              }) -
+                                 good.views.begin());
+    const auto complaint_with = [&](const auto& spoil) {
+      BoardObservations spoilt = good;
+      spoil(spoilt.views[v]);
+      return complaint_of(spoilt).find("its corners do not fit a flat board") != std::string::npos;
+    };
+    EXPECT_FALSE(complaint_with([](BoardView&) {}));
+    EXPECT_TRUE(complaint_with([&](BoardView& view) { reverse_rows(view, columns, 0, 100); }));
+    EXPECT_TRUE(complaint_with([&](BoardView& view) { reverse_rows(view, columns, 3, 100); }));
+    EXPECT_TRUE(complaint_with([&](BoardView& view) { reverse_rows(view, columns, 1, 2); }));
+    EXPECT_TRUE(complaint_with([](BoardView& view) {  // each has the next one's number
+      view.pixels_px.erase(view.pixels_px.begin() + 3);
+      view.ids.pop_back();
+    }));
+    EXPECT_TRUE(complaint_with([&](BoardView& view) {  // rows and columns exchanged
+      const int rows = static_cast<int>(good.target_m.size()) / columns;
+      for (int& id : view.ids) id = (id % rows) * columns + id / rows;
+    }));
+  }
 }
 
 TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {

@@ -189,7 +189,8 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   Solution s;
   if (options.check_input) s.diagnosis = check_observations(observations);
   s.state = initial_state(observations, models);
-  leave_out_beyond_field(observations, s.state, s.diagnosis.warnings);
+  leave_out_beyond_field(observations, s.state, options.held, problem_of(options, s.state.rig),
+                         s.diagnosis.warnings);
   if (options.check_input) {
     const bool free = options.held.empty() && options.known.empty() && !options.prior;
     s.diagnosis.add(check_views(observations, s.state, {.tilts = free}));
@@ -232,18 +233,23 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   return s;
 }
 
-/// The warning for residuals larger than corner noise, with their likely causes.
-std::string residual_warning(const Solution& s, double rms_px, bool look_for_causes) {
-  std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
+/// Trust warnings of the frames that seemed wrong at the start, and of large residuals. Frames are
+/// not doubted where another lens explains nearly all.
+std::vector<std::string> doubts_of_residuals(const Solution& s,
+                                             double rms_px,
+                                             bool look_for_causes) {
+  const bool large = rms_px > largest_corner_noise_px;
   std::vector<ResidualFinding> findings;
-  if (look_for_causes) {
+  if (large && look_for_causes) {
     findings = diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
   }
-  if (findings.empty()) words += ": corners are wrong, or the board or the rig moved or bent";
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    words += (i == 0 ? ": " : ". Further, ") + findings[i].text;
+  std::vector<std::string> doubts;
+  if (std::none_of(findings.begin(), findings.end(),
+                   [](const ResidualFinding& finding) { return finding.is_lens_alone; })) {
+    doubts = unrefuted(s.diagnosis.frame_doubts, s.observations, s.state, s.outliers);
   }
-  return words;
+  if (large) doubts.push_back(residual_warning(rms_px, findings));
+  return doubts;
 }
 
 double chi2_of_priors(const Solution& s) {
@@ -264,11 +270,8 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   measure_outliers(s.observations.target_m, s.state, summary.outliers);
   summary.warnings = s.diagnosis.warnings;
   summary.trust_warnings = s.diagnosis.trust_warnings;
-  const auto frames = unrefuted(s.diagnosis.frame_doubts, s.observations, s.state, s.outliers);
-  summary.trust_warnings.insert(summary.trust_warnings.end(), frames.begin(), frames.end());
-  if (summary.rms_px > largest_corner_noise_px) {
-    summary.trust_warnings.push_back(residual_warning(s, summary.rms_px, options.check_input));
-  }
+  const auto doubts = doubts_of_residuals(s, summary.rms_px, options.check_input);
+  summary.trust_warnings.insert(summary.trust_warnings.end(), doubts.begin(), doubts.end());
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   summary.prior_chi2 = chi2_of_priors(s);
   const auto known =

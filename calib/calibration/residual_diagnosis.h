@@ -16,6 +16,8 @@ namespace vernier::internal {
 struct ResidualFinding {
   double share = 0;  ///< fraction of Σ r² that it explains, in [0, 1]
   std::string text;  ///< cause, figures and remedy
+  /// Another lens model explains nearly all: frames and boards need not be wrong.
+  bool is_lens_alone = false;
 };
 
 struct ResidualDiagnosisOptions {
@@ -26,9 +28,9 @@ struct ResidualDiagnosisOptions {
 
 /// Locates the misfit of a solved calibration, largest cause first:
 ///
-///  - the lens: the same views solved with opencv5, opencv8 and fisheye4 (fraction 1 − Σr²/Σr₀²),
-///    with the mean residual along the radius at the image's edge, which shows a wrong radial
-///    model;
+///  - the lens: the same views solved with opencv5, opencv8 and fisheye4 (fraction 1 − Σr²/Σr₀²,
+///    both over the corners within the field of the model), with the mean residual along the radius
+///    at the image's edge, which shows a wrong radial model;
 ///  - the board: solved with free warp (calib/board/board_warp.h);
 ///  - one change of a camera or lens during the session (calib/calibration/change_findings.h);
 ///  - time: two images of a frame that fit alone but not with one pose of the board;

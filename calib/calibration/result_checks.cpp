@@ -8,11 +8,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <variant>
 #include <vector>
 
 #include "calib/calibration/lens_field.h"
+#include "calib/calibration/residual_diagnosis.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
@@ -64,10 +66,10 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
   if (folded == 0 && beyond == 0) return {};
   if (folded == 0) {
     return fmt::format(
-        "camera \"{}\" sees 90 degrees from its axis and beyond in {:.{}f} % of its image, where "
-        "{} "
-        "has no rays",
-        camera.name, percent, percent < 10 ? 1 : 0, model_name(camera.model));
+        "camera \"{}\" sees {} degrees from its axis and beyond in {:.{}f} % of its image, where "
+        "{} has no rays: functions that need one fail there; crop or mask these pixels, or leave "
+        "them unused",
+        camera.name, fisheye_field_deg, percent, percent < 10 ? 1 : 0, model_name(camera.model));
   }
   return fmt::format(
       "the distortion of camera \"{}\" cannot be inverted in {:.{}f} % of its image ({}; from "
@@ -78,6 +80,15 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
 }
 
 }  // namespace
+
+std::string residual_warning(double rms_px, const std::vector<ResidualFinding>& findings) {
+  std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
+  if (findings.empty()) words += ": corners are wrong, or the board or the rig moved or bent";
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    words += (i == 0 ? ": " : ". Further, ") + findings[i].text;
+  }
+  return words;
+}
 
 std::vector<std::string> inversion_warnings(const Rig& rig) {
   std::vector<std::string> warnings;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/calibration/residual_diagnosis.h"
 #include "calib/covariance.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
@@ -42,6 +43,10 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
 /// of the noise, which many corners would show. Residuals below 0.001 px are of computed corners,
 /// which have no noise to doubt.
 std::optional<std::string> noise_warning(double chi2, double dof, double pixel_sigma_px);
+
+/// The trust warning for residuals larger than corner noise, with what was found of their causes
+/// (calib/calibration/residual_diagnosis.h).
+std::string residual_warning(double rms_px, const std::vector<ResidualFinding>& findings);
 
 /// Checks that each pixel of each camera has a ray. One warning, with the region, per camera whose
 /// distortion cannot be inverted at some of 33 x 25 pixels spread over its image: the coefficients

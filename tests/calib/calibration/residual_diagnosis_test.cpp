@@ -19,6 +19,7 @@
 #include "calib/solver/minimise_reprojection.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
+#include "tests/support/wide_views.h"
 
 namespace vernier {
 
@@ -89,6 +90,23 @@ TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
   EXPECT_NE(estimate.calibration->trust_warnings[0].find("the lens needs another model: "),
             std::string::npos)
       << estimate.calibration->trust_warnings[0];
+}
+
+// fisheye4 has no rays for one corner in a hundred, and explains all others.
+TEST_F(ResidualDiagnosis, AWideLensIsNamedAndNeitherFramesNorPixelsAreDoubted) {
+  const auto [seen, beyond] =
+      test::wide_views(test::wide_rig(), {.most_deg = 96, .square_m = 0.035, .from_axis_deg = 75});
+  ASSERT_GT(beyond, 20);
+  for (const CameraModel& model : {CameraModel{Radial1{}}, CameraModel{OpenCv5{}}}) {
+    const std::vector<std::string> doubts =
+        calibrate(seen, {.model = model}).calibration->trust_warnings;
+    ASSERT_EQ(doubts.size(), 1u) << doubts[0];
+    EXPECT_NE(doubts[0].find("the lens needs another model: fisheye4 fits the same corners to 0.2"),
+              std::string::npos)
+        << doubts[0];
+    EXPECT_EQ(doubts[0].find("pixels"), std::string::npos) << doubts[0];
+    EXPECT_EQ(doubts[0].find("pose"), std::string::npos) << doubts[0];
+  }
 }
 
 TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {

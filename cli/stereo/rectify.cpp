@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -115,7 +116,7 @@ Rectified rectify(const Rig& rig,
 std::string convergence(const Rig& rig,
                         const RectifiedGeometry& geometry,
                         const RectifyArguments& options) {
-  constexpr double degrees = 180 / 3.14159265358979323846;
+  constexpr double degrees = 180 / std::numbers::pi;
   std::array<std::optional<Eigen::Vector2d>, 2> middle;
   for (int c = 0; c < 2; ++c) {
     const Camera& camera = rig.cameras[c];
@@ -124,13 +125,18 @@ std::string convergence(const Rig& rig,
   if (!middle[0] || !middle[1]) return "";
   const double disparity_px = middle[0]->x() - middle[1]->x();
   if (disparity_px <= most_disparity_px(geometry, options)) return "";
-  const double cosine = rig.T_camera_first[1].R(2, 2);  // of the angle between the axes
+  // Angle of an optical axis in the epipolar plane; rotation about the baseline is no convergence.
+  const auto angle = [](const Eigen::Matrix3d& R_rectified_camera) {
+    const Eigen::Vector3d axis = R_rectified_camera.col(2);
+    return std::atan2(axis.x(), axis.z());
+  };
+  const double converging =
+      angle(geometry.turn.R_rectified_left) - angle(geometry.turn.R_rectified_right);
   return fmt::format(
       ". The cameras converge by {:.0f} degrees: what is in the middle of both has a disparity of "
       "{:.0f} px here, beyond the {} px that were searched; give a larger --max-disparity, and a "
       "smaller --f-px with a wider --size, so that both images keep it",
-      degrees * std::acos(std::clamp(cosine, -1.0, 1.0)), disparity_px,
-      most_disparity_px(geometry, options));
+      degrees * converging, disparity_px, most_disparity_px(geometry, options));
 }
 
 /// Adds trust warnings if the rows are not aligned.

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <mutex>
+#include <string>
 
 #include "calib/base/unfinished_work.h"
 #include "cli/program/streams.h"
@@ -43,6 +44,11 @@ const char* short_name(int signal) {
   }
 }
 
+/// Says what becomes of the signal, unless another process does.
+void tell(const std::string& text) {
+  if (!ending().told_by_another) say(text);
+}
+
 /// Lets the signal end the program at once.
 void restore_default(int signal) noexcept {
   std::signal(signal, SIG_DFL);
@@ -59,7 +65,7 @@ bool asks_to_stop(int signal) {
   ending().signal = signal;
   ending().stop->request_stop();
   if (::isatty(STDERR_FILENO)) {
-    say("\nvernier: stopping after the running blocks; a second signal ends at once\n");
+    tell("\nvernier: stopping after the running blocks; a second signal ends at once\n");
   }
   return true;
 }
@@ -72,10 +78,8 @@ void* wait_for_signals(void*) {
   for (const int next : {SIGINT, SIGTERM, SIGHUP}) {
     if (sigismember(&ending().watched, next)) restore_default(next);
   }
-  if (!ending().told_by_another) {
-    say(std::string(::isatty(STDERR_FILENO) ? "\n" : "") + "vernier: ended by " +
-        short_name(signal) + "; unfinished files are removed\n");
-  }
+  tell(std::string(::isatty(STDERR_FILENO) ? "\n" : "") + "vernier: ended by " +
+       short_name(signal) + "; unfinished files are removed\n");
   end_by(signal);
 }
 
@@ -136,7 +140,7 @@ StopSignal::~StopSignal() {
     signal = ending().signal;
   }
   if (!signal) return;
-  say(std::string("vernier: ended by ") + short_name(signal) + "\n");
+  tell(std::string("vernier: ended by ") + short_name(signal) + "\n");
   end_by(signal);
 }
 
@@ -146,7 +150,7 @@ void StopSignal::end(const std::string& text) const {
     const std::lock_guard lock(ending().mutex);
     signal = ending().signal;
   }
-  say(std::string("vernier: ended by ") + short_name(signal) + " " + text + "\n");
+  tell(std::string("vernier: ended by ") + short_name(signal) + " " + text + "\n");
   end_by(signal);
 }
 

@@ -32,7 +32,8 @@ class StopSignal {
 
   std::stop_token token() const { return source_.get_token(); }
   bool came() const { return source_.stop_requested(); }
-  /// Says "vernier: ended by SIGINT " and the text, and ends by the signal that came.
+  /// Says "vernier: ended by SIGINT " and the text (unless another process does), and ends by the
+  /// signal that came.
   [[noreturn]] void end(const std::string& text) const;
 
  private:

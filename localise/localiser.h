@@ -87,10 +87,10 @@ struct LocaliserOptions {
   /// What `lines` takes for the probability that the robot stands where the map holds nothing,
   /// before it looks; below 1. 0: it is on the map.
   double off_map = 0;
-  /// What `lines` takes for the probability, before it looks, that two places of which the map
-  /// holds the same lines, there and around, are equal, so that their recordings differ by errors
-  /// alone; below 1. 0: what the map holds tells all places apart.
-  double repeats = 0.01;
+  /// What `lines` takes for the probability, before it looks and before the recorded views are
+  /// compared, that two places are equal, so that their recordings differ by errors alone; below 1.
+  /// 0: what the map holds tells all places apart.
+  double repeats = 0.05;
   LocaliserStages stages;
   /// `corners` answers if so many corners agree at least; from 4.
   int min_corners = 8;

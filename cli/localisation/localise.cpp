@@ -200,8 +200,10 @@ void add_localise(CLI::App& app, Session& session) {
   verb->add_option("--off-map", o->localiser.off_map,
                    "of lines: probability that the robot is where the map holds nothing; 0: never")
       ->capture_default_str();
-  verb->add_option("--repeats", o->localiser.repeats,
-                   "of lines: probability that places that look alike in the map are equal")
+  verb->add_option(
+          "--repeats", o->localiser.repeats,
+          "of lines: probability, before the map's views are compared, that places which look "
+          "alike are equal")
       ->capture_default_str();
   verb->add_option("--stages", o->stages, "of lines: those that run, or none")
       ->capture_default_str();

@@ -12,7 +12,7 @@
 
 namespace vernier::localise::internal {
 
-SpaceLines merged_lines(const TopologicalMap& map, const NodeGrid& grid, int node) {
+SpaceLines merged_lines(const TopologicalMap& map, const NodeGrid& grid, int node, int left_out) {
   constexpr double radius_m = 1.1, turn_rad = 1.05;
   SpaceLines lines;
   KnownLines known;
@@ -26,7 +26,7 @@ SpaceLines merged_lines(const TopologicalMap& map, const NodeGrid& grid, int nod
   }
   const Pose2D& here = map.nodes[node].pose;
   for (const int neighbour : grid.near(here, radius_m, turn_rad)) {
-    if (neighbour == node) continue;
+    if (neighbour == node || neighbour == left_out) continue;
     const Pose2D step = relative(map.nodes[neighbour].pose, here);
     const auto c = static_cast<float>(std::cos(step.heading_rad));
     const auto s = static_cast<float>(std::sin(step.heading_rad));

@@ -56,11 +56,12 @@ std::vector<int> NodeGrid::near(const Pose2D& pose, double radius_m, double turn
   return nodes;
 }
 
-int NodeGrid::nearest(const Pose2D& pose) const {
+int NodeGrid::nearest(const Pose2D& pose, int left_out) const {
   constexpr double most_m = 2, most_rad = 0.6, metres_per_rad = 0.5;
   int best = -1;
   double least = 0;
   for (const int i : near(pose, most_m, most_rad)) {
+    if (i == left_out) continue;
     const Pose2D& at = map_.nodes[i].pose;
     const double cost =
         distance_m(at, pose) + metres_per_rad * std::abs(heading_difference_rad(at, pose));

@@ -21,8 +21,8 @@ class NodeGrid {
   std::vector<int> near(const Pose2D& pose, double radius_m, double turn_rad) const;
 
   /// The node from which a view at `pose` is predicted best: near, and turned the same way (a turn
-  /// of 1 rad counts as 0.5 m). -1 if none is within 2 m and 0.6 rad.
-  int nearest(const Pose2D& pose) const;
+  /// of 1 rad counts as 0.5 m), other than `left_out`. -1 if none is within 2 m and 0.6 rad.
+  int nearest(const Pose2D& pose, int left_out = -1) const;
 
  private:
   static constexpr double cell_m_ = 2;

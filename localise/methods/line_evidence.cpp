@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 // Of LineLocaliser: what tells two poses of a map apart that may be equal places.
+#include <algorithm>
 #include <cstddef>
-#include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "localise/map/merged_lines.h"
 #include "localise/methods/line_localiser.h"
 #include "localise/methods/line_query.h"
 #include "localise/place.h"
@@ -32,40 +34,61 @@ LineLocaliser::JudgedPose& LineLocaliser::judged(const Pose2D& pose, Query& quer
   return judged;
 }
 
-/// What the map holds around a pose of the first look: in other directions, and a few steps before
-/// and behind it; nothing where it holds none. Computed once.
-LineLocaliser::Surroundings& LineLocaliser::surroundings(const Pose2D& pose, Query& query) const {
-  Surroundings& around = judged(pose, query).around;
-  if (!around.empty()) return around;
-  constexpr double third = std::numbers::pi / 3;
-  const auto look_from = [&](double forward_m, double turn_rad) {
-    const Pose2D at = compose(pose, {forward_m, 0, turn_rad});
-    const MapPart part = map_part(at, query);
-    std::optional<PlacePrediction>& seen = around.emplace_back();
-    if (part.node < 0) return;
-    seen.emplace().pose_in_map = at;
-    predict(*part.lines, part.pose_in_node, query.looks[0].view.camera, seen->lines);
-  };
-  for (int i = 1; i < 6; ++i) look_from(0, i * third);
-  for (const double forward_m : {1.5, -1.5, 3.0, -3.0}) {
-    for (const double turn_rad : {0.0, std::numbers::pi}) look_from(forward_m, turn_rad);
-  }
-  return around;
+/// What a view is at the best pose near one, by the map without one of its nodes. Nothing if the
+/// map holds nothing else there.
+std::optional<PlaceEvidence> LineLocaliser::evidence_without(int left_out,
+                                                             const ComparedView& view,
+                                                             const Pose2D& pose,
+                                                             Query& query) const {
+  constexpr int steps = 2;  // from a pose that is known as well as that of the query
+  const int node = grid_.nearest(pose, left_out);
+  if (node < 0) return {};
+  const Pose2D& of_node = map_.nodes[node].pose;
+  const SpaceLines lines = merged_lines(map_, grid_, node, left_out);
+  const Pose2D best =
+      improve(view, lines, relative(pose, of_node), steps, fine_agreement(), query.room).pose;
+  return place_evidence(view, lines, best, compose(of_node, best), fine_agreement());
 }
 
-/// How alike the surroundings of two poses are, where the map holds both.
-std::vector<LineLikeness> LineLocaliser::likenesses_around(const Pose2D& a,
-                                                           const Pose2D& b,
-                                                           Query& query) const {
-  std::vector<LineLikeness> lines;
-  Surroundings &at_a = surroundings(a, query), &at_b = surroundings(b, query);
-  for (std::size_t i = 0; i < at_a.size(); ++i) {
-    if (!at_a[i] || !at_b[i]) continue;
-    const std::vector<LineLikeness> here =
-        likenesses_between(*at_a[i], *at_b[i], query.looks[0].view.camera, fine_agreement());
-    lines.insert(lines.end(), here.begin(), here.end());
+/// The nodes whose views are taken for views of the place of a pose, nearest first.
+std::vector<int> LineLocaliser::nodes_of_place(const Pose2D& pose) const {
+  constexpr double near_m = 1, near_rad = 0.6;  // success, and half of what a camera sees
+  constexpr std::size_t most = 8;               // more say little more: they are not independent
+  std::vector<int> nodes = grid_.near(pose, near_m, near_rad);
+  std::stable_sort(nodes.begin(), nodes.end(), [&](int i, int j) {
+    return distance_m(map_.nodes[i].pose, pose) < distance_m(map_.nodes[j].pose, pose);
+  });
+  if (nodes.size() > most) nodes.resize(most);
+  return nodes;
+}
+
+/// What tells a from b in the views that the map recorded near them: each is compared with the
+/// other recordings of its own place and, at the same pose beside the other place, with those
+/// there, without the nearest one.
+RecordedDifference LineLocaliser::recorded_difference(const Pose2D& a,
+                                                      const Pose2D& b,
+                                                      Query& query) const {
+  RecordedDifference sum;
+  for (const auto& [here, there] : {std::pair{a, b}, std::pair{b, a}}) {
+    for (const int node : nodes_of_place(here)) {
+      const Pose2D& own = map_.nodes[node].pose;
+      const Pose2D other = compose(there, relative(own, here));
+      const ComparedView view = compared_view(map_.nodes[node].view);
+      auto known = query.recorded.find(node);
+      if (known == query.recorded.end()) {
+        known = query.recorded.emplace(node, evidence_without(node, view, own, query)).first;
+      }
+      std::optional<PlaceEvidence>& at_own = known->second;
+      auto at_other = evidence_without(grid_.nearest(other), view, other, query);
+      if (!at_own || !at_other) continue;
+      const PlaceDifference difference =
+          difference_between(view, *at_own, *at_other, fine_agreement());
+      sum.nats += difference.by_two_recordings;
+      sum.variance += difference.variance;
+      ++sum.views;
+    }
   }
-  return lines;
+  return sum;
 }
 
 /// What all looks together tell one pose from another by.
@@ -76,17 +99,14 @@ Evidence LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query
   JudgedPose &at_a = judged(a.pose, query), &at_b = judged(b.pose, query);
   const auto known = at_b.from.find(a.pose);
   if (known != at_b.from.end()) return known->second;
-  std::vector<LineLikeness> lines;
   for (std::size_t i = 0; i < query.looks.size(); ++i) {
     const PlaceDifference difference = difference_between(query.looks[i].view, at_a.of_looks[i],
                                                           at_b.of_looks[i], fine_agreement());
     sum.certain -= difference.by_two_recordings;
     sum.doubtful += difference.by_two_recordings;
     sum.variance += difference.variance;
-    lines.insert(lines.end(), difference.lines.begin(), difference.lines.end());
   }
-  sum.repeated =
-      options_.repeats * probability_equal(lines, likenesses_around(a.pose, b.pose, query));
+  sum.repeated = probability_equal(options_.repeats, recorded_difference(a.pose, b.pose, query));
   return at_b.from[a.pose] = sum;
 }
 

@@ -51,7 +51,6 @@ class LineLocaliser : public Localiser {
     Pose2D pose_in_node;
   };
   struct JudgedPose;
-  using Surroundings = std::vector<std::optional<PlacePrediction>>;
   /// Memory and intermediate results of one query.
   struct Query;
 
@@ -73,8 +72,12 @@ class LineLocaliser : public Localiser {
   bool is_plain(const Query& query) const;
   MapPart map_part(const Pose2D& pose, Query& query) const;
   JudgedPose& judged(const Pose2D& pose, Query& query) const;
-  Surroundings& surroundings(const Pose2D& pose, Query& query) const;
-  std::vector<LineLikeness> likenesses_around(const Pose2D& a, const Pose2D& b, Query& query) const;
+  std::optional<PlaceEvidence> evidence_without(int left_out,
+                                                const ComparedView& view,
+                                                const Pose2D& pose,
+                                                Query& query) const;
+  std::vector<int> nodes_of_place(const Pose2D& pose) const;
+  RecordedDifference recorded_difference(const Pose2D& a, const Pose2D& b, Query& query) const;
   Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -56,7 +57,6 @@ struct PoseOrder {
 /// What each look says of a pose of the first, line by line, and what tells others from it.
 struct LineLocaliser::JudgedPose {
   std::vector<PlaceEvidence> of_looks;
-  Surroundings around;
   std::map<Pose2D, Evidence, PoseOrder> from;
 };
 
@@ -71,6 +71,7 @@ struct LineLocaliser::Query {
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
   std::map<Pose2D, JudgedPose, PoseOrder> judged;
+  std::map<int, std::optional<PlaceEvidence>> recorded;  // of nodes' views, by the map without them
 };
 
 }  // namespace vernier::localise::internal

@@ -49,13 +49,34 @@ std::vector<double> weights_of(std::span<const WeightedMode> modes,
 
 }  // namespace
 
+namespace {
+
+/// Density of a difference of scores, per nat, where places are equal.
+double density_if_equal(double nats, double variance) {
+  return std::exp(-0.5 * nats * nats / variance) / std::sqrt(2 * std::numbers::pi * variance);
+}
+
+}  // namespace
+
+double probability_equal(double before,
+                         const RecordedDifference& recorded,
+                         const PosteriorOptions& options) {
+  if (!(recorded.variance > 0)) return before;
+  const double views = recorded.views;
+  const double variance =
+      options.dependence * (1 + (views - 1) * options.of_one_place) * recorded.variance;
+  const double equal = density_if_equal(recorded.nats, variance);
+  const double differ = options.differing_per_nat / views *
+                        std::exp(options.evidence_share * std::min(recorded.nats, 0.0));
+  return before * equal / (before * equal + (1 - before) * differ);
+}
+
 double weight_against(const Evidence& evidence, double share, const PosteriorOptions& options) {
   const double certain = std::exp(-share * evidence.certain);
   const double variance = options.dependence * evidence.variance;
   if (!(variance > 0)) return certain;
   const double d = evidence.doubtful;
-  const double equal = evidence.repeated * std::exp(-0.5 * d * d / variance) /
-                       std::sqrt(2 * std::numbers::pi * variance);
+  const double equal = evidence.repeated * density_if_equal(d, variance);
   const double differ = (1 - evidence.repeated) * options.differing_per_nat;
   return certain * (equal + differ * std::exp(-share * std::max(d, 0.0))) /
          (equal + differ * std::exp(share * std::min(d, 0.0)));

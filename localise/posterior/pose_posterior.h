@@ -27,6 +27,13 @@ struct Evidence {
   double variance = 0;  ///< of the latter if the two places are equal: 0 on average
   double repeated = 0;  ///< probability that they are, by the map alone
 };
+
+/// What tells two places apart in the views that a map recorded at them: the sum of doubtful
+/// differences in favour of where each was taken, nats.
+struct RecordedDifference {
+  double nats = 0, variance = 0;  ///< variance: of one that is 0 on average, views independent
+  int views = 0;
+};
 using EvidenceBetween = std::function<Evidence(const Hypothesis&, const Hypothesis&)>;
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,
@@ -58,6 +65,9 @@ struct PosteriorOptions {
   /// Of places that may be equal: how many times as large as by independent lines the variance is,
   /// and the density of a difference of scores, per nat, where places differ.
   double dependence = 1.5, differing_per_nat = 0.01;
+  /// Correlation of the differences of two views of one place, which are compared with the same
+  /// recordings of the other.
+  double of_one_place = 0.15;
   /// Prior probability that the view was taken where the map holds nothing. Its odds grow by
   ///
   ///     exp(off_gain + off_steepness (q - off_misfit) √(observations / usual_observations)),
@@ -71,6 +81,12 @@ struct PosteriorOptions {
 /// The smallest error rate that can be stated in a map of so many nodes: the rest is what the model
 /// does not know.
 double least_error_rate(std::size_t nodes, const PosteriorOptions& options = {});
+
+/// Probability that two places are equal which was `before`, by what the views recorded at them say
+/// (docs/localisation.md, equation 1).
+double probability_equal(double before,
+                         const RecordedDifference& recorded,
+                         const PosteriorOptions& options = {});
 
 /// Weight of the other hypothesis where that with this evidence weighs 1, with the share by which
 /// evidence counts (docs/localisation.md, "Places that are alike").

@@ -15,42 +15,6 @@
 
 namespace vernier::localise::internal {
 
-double probability_common(double likeness, double common, const RecordingOptions& options) {
-  // Equation (1): the density of what the map holds at the other place, if that has the line (and
-  // the recording kept or lost it), and if it has not.
-  const double as_one = (1 - options.lost) * likeness + options.lost * options.chance;
-  const double as_others = options.chance;
-  return common * as_one / (common * as_one + (1 - common) * as_others);
-}
-
-double common_share(std::span<const LineLikeness> lines, const RecordingOptions& options) {
-  constexpr int rounds = 20;
-  double share = 0.5;
-  for (int round = 0; round < rounds; ++round) {
-    double common = 1, all = 2;
-    for (const LineLikeness& line : lines) {
-      common += line.weight * probability_common(line.likeness, share, options);
-      all += line.weight;
-    }
-    share = common / all;
-  }
-  return share;
-}
-
-double probability_equal(std::span<const LineLikeness> view,
-                         std::span<const LineLikeness> around,
-                         const RecordingOptions& options) {
-  std::vector<LineLikeness> all(view.begin(), view.end());
-  all.insert(all.end(), around.begin(), around.end());
-  const double common = common_share(all, options);
-  double log_probability = 0;
-  for (const LineLikeness& line : view) {
-    log_probability += line.weight * std::log(probability_common(line.likeness, common, options));
-  }
-  // Equation (2). Each line is there twice, from either place.
-  return std::exp(log_probability / (2 * options.of_one_thing));
-}
-
 namespace {
 
 std::array<ImageLines*, 2> sets(PredictedLines& lines) { return {&lines.steep, &lines.flat}; }
@@ -86,52 +50,34 @@ bool are_one(const ImageLines& lines,
   return across.norm() < aside_m + sigmas * sigma;
 }
 
-/// Of the lines of one place, what the map holds at the other. Where that is the same line of the
-/// world, it is no second recording: nothing.
-using Commons = std::array<std::vector<LineLikeness>, 2>;
+/// What the map holds at the other of two places for a line of one.
+struct Counterpart {
+  int line = -1;        ///< the best one of the same class; -1: nothing like it
+  bool is_one = false;  ///< it is the line itself, seen from the other place
+};
+/// Of the steep and flat lines.
+using Counterparts = std::array<std::vector<Counterpart>, 2>;
 
-Commons likenesses(PlacePrediction& place,
-                   PlacePrediction& other_place,
-                   const ViewCamera& camera,
-                   const AgreementOptions& options) {
-  PredictedLines &lines = place.lines, &others = other_place.lines;
-  Commons result;
+Counterparts counterparts(PlacePrediction& place,
+                          PlacePrediction& other_place,
+                          const ViewCamera& camera,
+                          const AgreementOptions& options) {
+  Counterparts result;
   for (std::size_t set = 0; set < 2; ++set) {
-    const ImageLines& own = *sets(lines)[set];
-    ImageLines& other = *sets(others)[set];
+    const ImageLines& own = *sets(place.lines)[set];
+    ImageLines& others = *sets(other_place.lines)[set];
     result[set].reserve(own.size);
     for (int i = 0; i < own.size; ++i) {
-      const QueryLine line = as_query_line(own, i);
-      const LineMatch match = best_match(line, other, camera, options.tolerance);
-      LineLikeness& of_line = result[set].emplace_back();
-      of_line.is_one = match.line >= 0 && are_one(own, i, place.pose_in_map, other, match.line,
-                                                  other_place.pose_in_map, camera);
-      of_line.partner = match.line;
-      if (of_line.is_one) continue;
-      of_line.likeness = likeness(match);
-      const bool counts = line.steep == (set == 0) && may_be_missed(own, i);
-      if (counts) of_line.weight = observations(line.length_px);
+      const int line = best_match(as_query_line(own, i), others, camera, options.tolerance).line;
+      const bool is_one = line >= 0 && are_one(own, i, place.pose_in_map, others, line,
+                                               other_place.pose_in_map, camera);
+      result[set].push_back({line, is_one});
     }
   }
   return result;
 }
 
-std::vector<LineLikeness> of_both(const Commons& a, const Commons& b) {
-  std::vector<LineLikeness> lines;
-  for (const Commons* of : {&a, &b}) {
-    for (const auto& set : *of) lines.insert(lines.end(), set.begin(), set.end());
-  }
-  return lines;
-}
-
 }  // namespace
-
-std::vector<LineLikeness> likenesses_between(PlacePrediction& a,
-                                             PlacePrediction& b,
-                                             const ViewCamera& camera,
-                                             const AgreementOptions& options) {
-  return of_both(likenesses(a, b, camera, options), likenesses(b, a, camera, options));
-}
 
 PlaceEvidence place_evidence(const ComparedView& view,
                              const SpaceLines& lines,
@@ -161,8 +107,8 @@ PlaceDifference difference_between(const ComparedView& view,
                                    PlaceEvidence& a,
                                    PlaceEvidence& b,
                                    const AgreementOptions& options) {
-  const Commons of_a = likenesses(a.predicted, b.predicted, view.camera, options);
-  const Commons of_b = likenesses(b.predicted, a.predicted, view.camera, options);
+  const Counterparts of_a = counterparts(a.predicted, b.predicted, view.camera, options);
+  const Counterparts of_b = counterparts(b.predicted, a.predicted, view.camera, options);
   PlaceDifference difference;
   const auto add = [&](double nats, bool is_one) {
     (is_one ? difference.by_one_recording : difference.by_two_recordings) += nats;
@@ -182,7 +128,7 @@ PlaceDifference difference_between(const ComparedView& view,
     std::vector<float> left = b.missed[set];
     for (std::size_t i = 0; i < of_a[set].size(); ++i) {
       float missed = a.missed[set][i];
-      if (const int partner = of_a[set][i].partner; partner >= 0) {
+      if (const int partner = of_a[set][i].line; partner >= 0) {
         missed -= std::exchange(left[partner], 0.0f);
       }
       add(missed * per_observation, of_a[set][i].is_one);
@@ -191,7 +137,6 @@ PlaceDifference difference_between(const ComparedView& view,
       add(-left[i] * per_observation, of_b[set][i].is_one);
     }
   }
-  difference.lines = of_both(of_a, of_b);
   return difference;
 }
 

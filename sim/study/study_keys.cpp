@@ -49,7 +49,7 @@ namespace {
 constexpr int results_version = 1;
 
 /// The same of one method: `lines` since places too unlike the answer are no rivals of it.
-constexpr int lines_version = 4;
+constexpr int lines_version = 5;
 
 /// The same of ceilings: 3 since the protocol's density counts.
 constexpr int ceiling_version = 3;

@@ -48,7 +48,8 @@ namespace {
 /// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
-/// The same of one method: `lines` since places too unlike the answer are no rivals of it.
+/// The same of one method, also where a default changes, for those are not part of a key: `lines`
+/// since the recorded views tell whether places are equal.
 constexpr int lines_version = 5;
 
 /// The same of ceilings: 3 since the protocol's density counts.

@@ -33,6 +33,8 @@ Mesh welded(const Mesh& mesh, double within) {
   Mesh result;
   result.up_axis = mesh.up_axis;
   result.unit_m = mesh.unit_m;
+  result.up_because = mesh.up_because;
+  result.unit_because = mesh.unit_because;
   result.format = mesh.format;
   std::vector<std::uint32_t> moved(mesh.vertices.size());
   PointGrid grid(within);

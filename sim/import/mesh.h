@@ -21,6 +21,7 @@ struct Mesh {
   /// What the file says of its axes and units; nothing where it does not.
   std::optional<int> up_axis;  ///< 0 to 2: +x, +y, +z
   std::optional<double> unit_m;
+  std::string up_because = "by the file", unit_because = "by the file";  ///< why so
   std::string format;
   double step = 0;  ///< to which coordinates were rounded, in units of the file
   std::size_t parts_left_out = 0, doors = 0;  ///< of its parts; doors that IFC names and that stay

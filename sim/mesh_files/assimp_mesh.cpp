@@ -6,31 +6,55 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
+#include "sim/mesh_files/ifc_unit.h"
 #include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::sim::internal {
 
 namespace {
 
+/// These formats have a metre and an axis, or assimp makes them so: y is up then.
+bool is_turned(const std::string& ending) {
+  constexpr std::array metric{".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb"};
+  return std::find(metric.begin(), metric.end(), ending) != metric.end();
+}
+
+/// Metres of a unit of the coordinates that assimp gives of an IFC file: it applies prefixes of
+/// metres, and takes a foot for a metre.
+std::optional<double> ifc_unit_m(const std::filesystem::path& file) {
+  const std::optional<IfcLengthUnit> unit =
+      ifc_length_unit(vernier::internal::read_whole(file), file.string());
+  if (!unit) return {};
+  return unit->is_si ? 1 : unit->metres;
+}
+
 /// What is known of a format, or stands in the file.
-void read_axes(const aiScene& scene, const std::string& ending, Mesh& mesh) {
-  // These formats have a metre and an axis, or assimp makes them so: y is up then.
-  for (const char* metric : {".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb"}) {
-    if (ending != metric) continue;
+void read_axes(const aiScene& scene,
+               const std::filesystem::path& file,
+               const std::string& ending,
+               Mesh& mesh) {
+  if (is_turned(ending)) {
     mesh.up_axis = 1;
-    mesh.unit_m = 1;
+    if (ending == ".ifc") {
+      mesh.unit_m = ifc_unit_m(file);
+    } else if (ending != ".ifczip") {  // which shows its unit only when it is unpacked
+      mesh.unit_m = 1;
+    }
   }
   if (ending == ".fbx" && scene.mMetaData != nullptr) {
     std::int32_t up = 0;
@@ -54,17 +78,20 @@ class SceneReader {
     constexpr int deepest = 1000;
     if (depth > deepest) throw Error(place_, "is nested too deep", "export it flat");
     const std::string name = in_small_letters(node.mName.C_Str());
-    const bool is_left_out =
-        std::any_of(leave_out_.begin(), leave_out_.end(),
-                    [&](const std::string& word) { return name.find(word) != std::string::npos; });
-    if (is_left_out) {
+    // The root has the name of the file or of its project, which no part is called by.
+    if (node.mParent != nullptr && is_left_out(name)) {
       ++mesh.parts_left_out;
       return;
     }
     mesh.doors += name.starts_with("ifcdoor");
     const aiMatrix4x4 T = parent * node.mTransformation;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      add_part(*scene_.mMeshes[node.mMeshes[i]], T, mesh);
+      const aiMesh& part = *scene_.mMeshes[node.mMeshes[i]];
+      if (is_left_out(material_of(part))) {
+        ++mesh.parts_left_out;
+      } else {
+        add_part(part, T, mesh);
+      }
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) {
       add_node(*node.mChildren[i], T, depth + 1, mesh);
@@ -72,6 +99,18 @@ class SceneReader {
   }
 
  private:
+  bool is_left_out(const std::string& name) const {
+    return std::any_of(leave_out_.begin(), leave_out_.end(), [&](const std::string& word) {
+      return name.find(word) != std::string::npos;
+    });
+  }
+
+  /// The name of its material in small letters.
+  std::string material_of(const aiMesh& part) const {
+    if (part.mMaterialIndex >= scene_.mNumMaterials) return {};
+    return in_small_letters(scene_.mMaterials[part.mMaterialIndex]->GetName().C_Str());
+  }
+
   void add_part(const aiMesh& part, const aiMatrix4x4& T, Mesh& mesh) const {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (unsigned v = 0; v < part.mNumVertices; ++v) {
@@ -101,9 +140,16 @@ class SceneReader {
   std::string place_;
 };
 
-}  // namespace
-
-namespace {
+/// What to do about a file that assimp does not read. Its IFC reader asks for the OwnerHistory that
+/// IFC4 made optional.
+std::string remedy_of(const std::string& said, const std::string& ending) {
+  const bool is_ifc = ending == ".ifc" || ending == ".ifczip";
+  if (is_ifc && said.find("expected argument 1 ") != std::string::npos) {
+    return "it needs the OwnerHistory that IFC4 lets be $: export as IFC2x3, or name one "
+           "IFCOWNERHISTORY there";
+  }
+  return "check the file, or convert it to another format";
+}
 
 Mesh read_here(const std::filesystem::path& file,
                const std::string& ending,
@@ -114,10 +160,10 @@ Mesh read_here(const std::filesystem::path& file,
   if (scene == nullptr || scene->mRootNode == nullptr) {
     throw Error(file.string(),
                 vernier::internal::in_quotes(importer.GetErrorString()) + " says its reader",
-                "check the file, or convert it to another format");
+                remedy_of(importer.GetErrorString(), ending));
   }
   Mesh mesh;
-  read_axes(*scene, ending, mesh);
+  read_axes(*scene, file, ending, mesh);
   SceneReader(*scene, leave_out, file.string()).add_node(*scene->mRootNode, aiMatrix4x4(), 0, mesh);
   return mesh;
 }
@@ -195,6 +241,7 @@ Mesh read_with_assimp(const std::filesystem::path& file,
       in_child_process([&] { return bytes_of(read_here(file, ending, leave_out)); },
                        least_s + (fault ? 0 : s_per_byte * size), file.string());
   Mesh mesh = mesh_of(bytes, file.string());
+  if (is_turned(ending)) mesh.up_because = "as its reader turns it";
   double largest = 0;  // assimp computes in floats
   for (const Eigen::Vector3d& v : mesh.vertices)
     largest = std::max(largest, v.cwiseAbs().maxCoeff());

@@ -50,6 +50,7 @@ Mesh read_line_list(const std::filesystem::path& file) {
   mesh.format = "list of lines";
   mesh.up_axis = 2;
   mesh.unit_m = 1;
+  mesh.up_because = mesh.unit_because = "as in all lists";
   TextLines lines(file);
   std::string_view line;
   while (lines.next(line)) {
@@ -60,10 +61,11 @@ Mesh read_line_list(const std::filesystem::path& file) {
     std::size_t count = 0;
     for (const std::string_view field : fields) {
       if (field.empty()) continue;
-      if (count == numbers.size()) break;
-      numbers[count++] = parse_real(field, lines.place(), "coordinate");
+      const double number = parse_real(field, lines.place(), "coordinate");
+      if (count < numbers.size()) numbers[count] = number;
+      ++count;
     }
-    if (count < numbers.size()) {
+    if (count != numbers.size()) {
       throw Error(lines.place(), "has " + std::to_string(count) + " numbers",
                   "give x1 y1 z1 x2 y2 z2, in metres");
     }

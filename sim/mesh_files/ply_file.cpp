@@ -20,6 +20,7 @@
 #include "calib/error.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/mesh_file.h"
+#include "sim/visibility/convex_pieces.h"
 
 namespace vernier::sim::internal {
 
@@ -41,6 +42,9 @@ std::optional<Kind> kind_of(std::string_view word) {
   const auto found = kinds.find(word);
   return found == kinds.end() ? std::nullopt : std::optional(found->second);
 }
+
+/// Of a face, for cutting a concave one into triangles takes their square, at worst their cube.
+constexpr std::size_t most_corners = 2000;
 
 struct Property {
   std::string name;
@@ -79,6 +83,8 @@ class PlyReader {
       for (std::uint64_t i = 0; i < element.count; ++i) read_one(element, i, mesh);
     }
     check_indices(mesh);
+    add_faces(mesh);
+    mesh.step = step_of(mesh);
     return mesh;
   }
 
@@ -246,11 +252,15 @@ class PlyReader {
         for (double k = 0; k < count; ++k) corners_.push_back(number(property.kind));
         const bool is_face = element.name == "face" &&
                              (property.name == "vertex_indices" || property.name == "vertex_index");
-        for (std::size_t k = 2; is_face && k < corners_.size(); ++k) {
-          mesh.triangles.push_back(
-              {index(corners_[0]), index(corners_[k - 1]), index(corners_[k])});
+        if (is_face && corners_.size() > most_corners) {
+          fail("has a face of " + std::to_string(corners_.size()) + " corners",
+               "export it in triangles");
         }
-        if (mesh.triangles.size() > most_triangles)
+        if (is_face && corners_.size() >= 3) {
+          face_sizes_.push_back(static_cast<std::uint32_t>(corners_.size()));
+          for (const double corner : corners_) face_corners_.push_back(index(corner));
+        }
+        if (face_corners_.size() > 2 * face_sizes_.size() + most_triangles)
           fail("has too many triangles", "export fewer details");
         continue;
       }
@@ -276,20 +286,62 @@ class PlyReader {
 
   void check_indices(const Mesh& mesh) const {
     const auto good = [&](std::uint32_t i) { return i < mesh.vertices.size(); };
-    const auto all_good = [&](const auto& ends) {
-      return std::all_of(ends.begin(), ends.end(), good);
-    };
-    if (!std::all_of(mesh.triangles.begin(), mesh.triangles.end(), all_good) ||
-        !std::all_of(mesh.lines.begin(), mesh.lines.end(), all_good)) {
+    const auto both_good = [&](const auto& ends) { return good(ends[0]) && good(ends[1]); };
+    if (!std::all_of(face_corners_.begin(), face_corners_.end(), good) ||
+        !std::all_of(mesh.lines.begin(), mesh.lines.end(), both_good)) {
       fail("names a vertex that it does not have", "export it again");
     }
+  }
+
+  /// Faces as fans of triangles: whole if they are convex, else of convex pieces.
+  void add_faces(Mesh& mesh) const {
+    std::size_t first = 0;
+    const auto add_fan = [&](const auto& corner, std::size_t count) {
+      for (std::size_t k = 2; k < count; ++k) {
+        mesh.triangles.push_back({corner(0), corner(k - 1), corner(k)});
+      }
+    };
+    std::vector<Eigen::Vector3d> polygon;
+    for (const std::uint32_t size : face_sizes_) {
+      const auto of_face = [&](std::size_t k) { return face_corners_[first + k]; };
+      polygon.clear();
+      for (std::size_t k = 0; size > 3 && k < size; ++k) {
+        polygon.push_back(mesh.vertices[of_face(k)]);
+      }
+      std::vector<std::vector<int>> pieces;
+      if (size > 3) pieces = convex_pieces(polygon);
+      if (pieces.size() < 2) add_fan(of_face, size);
+      for (std::size_t i = 0; pieces.size() > 1 && i < pieces.size(); ++i) {
+        const std::vector<int>& piece = pieces[i];
+        add_fan([&](std::size_t k) { return of_face(static_cast<std::size_t>(piece[k])); },
+                piece.size());
+      }
+      first += size;
+    }
+  }
+
+  /// To which coordinates are rounded that stand as floats in binary; ASCII has its own digits.
+  double step_of(const Mesh& mesh) const {
+    if (encoding_ == Encoding::ascii) return 0;
+    double largest = 0;
+    for (const Element& element : elements_) {
+      for (const Property& property : element.properties) {
+        if (element.name != "vertex" || property.kind != Kind::float32) continue;
+        if (property.name.size() != 1 || property.name[0] < 'x' || property.name[0] > 'z') continue;
+        const int axis = property.name[0] - 'x';
+        for (const Eigen::Vector3d& v : mesh.vertices)
+          largest = std::max(largest, std::abs(v[axis]));
+      }
+    }
+    return largest * std::numeric_limits<float>::epsilon();
   }
 
   std::string place_, bytes_;
   std::size_t at_ = 0;
   Encoding encoding_ = Encoding::ascii;
   std::vector<Element> elements_;
-  std::vector<double> corners_;
+  std::vector<double> corners_;                           // of a list
+  std::vector<std::uint32_t> face_sizes_, face_corners_;  // of all faces, one after the other
 };
 
 }  // namespace

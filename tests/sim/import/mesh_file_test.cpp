@@ -6,6 +6,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +15,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "calib/error.h"
 #include "datasets/shipped.h"
@@ -20,6 +23,7 @@
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
+#include "sim/mesh_files/ifc_unit.h"
 #include "sim/world.h"
 #include "sim/world/world_export.h"
 #include "tests/support/error_message.h"
@@ -129,6 +133,123 @@ TEST(PlyFile, SaysWhatIsWrong) {
   }
 }
 
+/// A wall of 8 x 3 m with a doorway from 3 to 4 m, 2 m high, as one face that begins at any corner;
+/// a keyhole polygon is the same wall around a window, cut to its border.
+std::string wall_of_one_face(int first, bool is_keyhole) {
+  std::vector<std::string> corners{"0 0 0", "3 0 0", "3 0 2", "4 0 2",
+                                   "4 0 0", "8 0 0", "8 0 3", "0 0 3"};
+  std::vector<int> face{0, 1, 2, 3, 4, 5, 6, 7};
+  if (is_keyhole) {
+    corners = {"0 0 0", "8 0 0", "8 0 3", "0 0 3", "3 0 0.5", "3 0 2", "4 0 2", "4 0 0.5"};
+    face = {0, 1, 2, 3, 0, 4, 5, 6, 7, 4};
+  }
+  std::rotate(face.begin(), face.begin() + first, face.end());
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const std::string& corner : corners) text += corner + "\n";
+  text += std::to_string(face.size());
+  for (const int corner : face) text += " " + std::to_string(corner);
+  return text + "\n";
+}
+
+// Property: a face's triangles have its area, and none of them lies in its doorway or window.
+TEST(PlyFile, ConcaveFacesKeepTheirOpenings) {
+  const Folder folder;
+  for (const bool is_keyhole : {false, true}) {
+    for (int first = 0; first < (is_keyhole ? 10 : 8); ++first) {
+      const Mesh mesh = read_mesh(folder.write("w.ply", wall_of_one_face(first, is_keyhole)));
+      double area = 0;
+      for (const auto& [a, b, c] : mesh.triangles) {
+        const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+        area += 0.5 * (q - p).cross(r - p).norm();
+        const Eigen::Vector3d middle = (p + q + r) / 3;
+        EXPECT_FALSE(middle.x() > 3 && middle.x() < 4 && middle.z() > 0.5 && middle.z() < 2);
+      }
+      EXPECT_NEAR(area, is_keyhole ? 24 - 1.5 : 24 - 2, 1e-9) << first;
+    }
+  }
+}
+
+// A float holds 500 km to 3 cm; ASCII has the digits that it shows.
+TEST(PlyFile, SaysToWhatItsFloatsAreRounded) {
+  const Folder folder;
+  std::string far = binary_square(false);
+  const float x = 500'000;
+  std::memcpy(far.data() + far.find("end_header") + 11, &x, sizeof x);
+  EXPECT_NEAR(read_mesh(folder.write("far.ply", far)).step, 0.06, 0.01);
+  EXPECT_LT(read_mesh(folder.write("near.ply", binary_square(true))).step, 2e-7);
+  std::string text = square;
+  text.replace(text.find("0 0 0 9"), 7, "500000.123 0 0 9");
+  EXPECT_EQ(read_mesh(folder.write("text.ply", text)).step, 0);
+  const auto at = text.find("4 0 1 2 3");
+  std::string corners = "2001";
+  for (int i = 0; i < 2001; ++i) corners += " " + std::to_string(i % 4);
+  text.replace(at, 9, corners);
+  text.replace(text.find("uchar int vertex_indices"), 5, "int");
+  EXPECT_EQ(said_of("a.ply", text), "a.ply: has a face of 2001 corners; export it in triangles");
+}
+
+TEST(IfcUnit, IsReadFromTheAssignment) {
+  const std::string metre = "#1=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n";
+  const std::string foot =
+      "#2 = IFCMEASUREWITHUNIT(IFCLENGTHMEASURE(0.3048), #1);\n#3=IFCDIMENSIONALEXPONENTS(1,0,0,"
+      "0,0,0,0);\n#4=IFCCONVERSIONBASEDUNIT(#3,.LENGTHUNIT.,'FOOT;''s',#2);\n";
+  const std::string others =
+      "#8=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n/* #9=IFCUNITASSIGNMENT((#1)); */\n"
+      "#5=IFCPROJECT('2x',$,'a;b',$,$,$,$,(#7),#6);\n";
+  const auto metres = [&](const std::string& text) {
+    return ifc_length_unit(text + others, "a.ifc").value_or(IfcLengthUnit{0, false}).metres;
+  };
+  EXPECT_EQ(metres(metre + "#6=IFCUNITASSIGNMENT((#8,#1));"), 1);
+  EXPECT_EQ(metres("#1=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);#6=IFCUNITASSIGNMENT((#1));"),
+            0.001);
+  EXPECT_EQ(metres(metre + foot + "#6=IFCUNITASSIGNMENT((#8,#4));"), 0.3048);
+  // An inch by millimetres, and a yard by feet.
+  EXPECT_NEAR(metres("#1=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);"
+                     "#2=IFCMEASUREWITHUNIT(IFCRATIOMEASURE(25.4),#1);"
+                     "#4=IFCCONVERSIONBASEDUNIT(#3,.LENGTHUNIT.,'INCH',#2);"
+                     "#6=IFCUNITASSIGNMENT((#4));"),
+              0.0254, 1e-12);
+  EXPECT_NEAR(metres(metre + foot +
+                     "#10=IFCMEASUREWITHUNIT(IFCRATIOMEASURE(3.),#4);"
+                     "#11=IFCCONVERSIONBASEDUNIT(#3,.LENGTHUNIT.,'YARD',#10);"
+                     "#6=IFCUNITASSIGNMENT((#11,#8));#12=IFCUNITASSIGNMENT((#1));"),
+              0.9144, 1e-12);
+  EXPECT_EQ(metres("#6=IFCUNITASSIGNMENT((#8));"), 0);
+  EXPECT_EQ(metres(""), 0);
+  const auto said = [&](const std::string& text) { return error_message([&] { metres(text); }); };
+  EXPECT_EQ(said(metre + foot + "#6=IFCUNITASSIGNMENT((#1,#4));"),
+            "a.ifc: assigns two units of length; leave one in its IFCUNITASSIGNMENT");
+  EXPECT_NE(said("#4=IFCCONVERSIONBASEDUNIT(#3,.LENGTHUNIT.,'ELL',#99);"
+                 "#6=IFCUNITASSIGNMENT((#4));")
+                .find("has a unit of length that is not understood: #4"),
+            std::string::npos);
+  // One by itself.
+  EXPECT_NE(said("#2=IFCMEASUREWITHUNIT(1.,#4);#4=IFCCONVERSIONBASEDUNIT(#3,.LENGTHUNIT.,'E',#2);"
+                 "#6=IFCUNITASSIGNMENT((#4));")
+                .find("not understood"),
+            std::string::npos);
+}
+
+constexpr const char* two_parts =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no Wall\nusemtl plaster\nf 1 2 3\nusemtl Glass\n"
+    "f 1 2 4\no Door_1\nusemtl plaster\nf 2 3 4\n";
+
+// assimp calls the root of an OBJ file by the file's name.
+TEST(MeshFile, PartsAreLeftOutByTheirNamesAndMaterialsButNotByTheFilesName) {
+  if (assimp_version().empty()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  folder.write("m.mtl", "newmtl plaster\nnewmtl Glass\n");
+  const auto file = folder.write("door_glass.obj", "mtllib m.mtl\n" + std::string(two_parts));
+  EXPECT_EQ(read_mesh(file).triangles.size(), 3u);
+  EXPECT_EQ(read_mesh(file, {{"door"}, 0}).triangles.size(), 2u);
+  const Mesh mesh = read_mesh(file, {{"GLASS"}, 0});
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.parts_left_out, 1u);
+  EXPECT_EQ(read_mesh(file, {{"glass", "Door"}, 0}).triangles.size(), 1u);
+}
+
 TEST(LineList, IsReadAndSaysWhatIsWrong) {
   const Folder folder;
   const Mesh mesh =
@@ -138,6 +259,8 @@ TEST(LineList, IsReadAndSaysWhatIsWrong) {
   EXPECT_EQ(mesh.up_axis, 2);
   EXPECT_EQ(said_of("a.txt", "0 0 0 1 0 0\n0 0 0 1 0\n"),
             "a.txt:2: has 5 numbers; give x1 y1 z1 x2 y2 z2, in metres");
+  EXPECT_EQ(said_of("a.txt", "0 0 0 1 0 0 7\n"),
+            "a.txt:1: has 7 numbers; give x1 y1 z1 x2 y2 z2, in metres");
   EXPECT_NE(said_of("a.txt", "0 0 0 1 0 one\n").find("a.txt:1:"), std::string::npos);
 }
 

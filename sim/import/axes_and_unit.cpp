@@ -16,18 +16,26 @@
 
 #include "calib/error.h"
 #include "sim/import/convex_faces.h"
+#include "sim/import/even_storeys.h"
 #include "sim/import/mesh.h"
 
 namespace vernier::sim::internal {
 
 namespace {
 
+/// A unit of length, and how high a building of one storey may be with it. Ranges of two units that
+/// overlap make the program ask: a hall of 10 m is one of 3.05 m if its unit is a foot. A metre has
+/// the widest, being the commonest; those of a millimetre and a centimetre just do not overlap.
 struct Unit {
   double metres;
   const char* name;
+  double lowest_m, highest_m;
 };
-constexpr std::array units{Unit{1, "m"}, Unit{0.01, "cm"}, Unit{0.001, "mm"}, Unit{0.0254, "in"},
-                           Unit{0.3048, "ft"}};
+constexpr std::array units{Unit{1, "m", 1.8, 60}, Unit{0.01, "cm", 2.2, 22},
+                           Unit{0.001, "mm", 2.2, 60}, Unit{0.0254, "in", 2.2, 22},
+                           Unit{0.3048, "ft", 2.2, 22}};
+constexpr double lowest_storey_m = 2.2, highest_storey_m = 6;  // of several, from floor to floor
+constexpr double shortest_m = 3, longest_m = 500;              // the longer side of the plan
 
 /// What stands along an axis: its lower and upper end, and how much of it there is.
 struct Upright {
@@ -53,14 +61,26 @@ std::vector<Upright> uprights(const Mesh& mesh, int axis) {
   return found;
 }
 
+/// Where heights along an axis lie in the building or, folded, in the storey of theirs: 0 to 1.
+struct Heights {
+  double low = 0, size = 0;
+  bool is_folded = false;
+
+  double share(double height) const {
+    if (!(size > 0)) return 0;
+    const double share = (height - low) / size;
+    return is_folded ? share - std::floor(share) : std::clamp(share, 0.0, 1.0);
+  }
+};
+
 /// Share of what stands along an axis that begins at the commonest of 100 heights, times that of
 /// what ends at the commonest: walls stand on one floor and reach one ceiling.
-double alike(const std::vector<Upright>& uprights, double low, double high) {
+double alike(const std::vector<Upright>& uprights, const Heights& heights) {
   std::array<double, 101> begins{}, ends{};
   double all = 0;
   const auto at = [&](double height) {
-    const double share = high > low ? (height - low) / (high - low) : 0;
-    return static_cast<std::size_t>(std::lround(100 * std::clamp(share, 0.0, 1.0)));
+    const auto slice = static_cast<std::size_t>(std::lround(100 * heights.share(height)));
+    return heights.is_folded ? slice % 100 : slice;
   };
   for (const Upright& upright : uprights) {
     begins[at(upright.low)] += upright.amount;
@@ -74,12 +94,14 @@ double alike(const std::vector<Upright>& uprights, double low, double high) {
 
 /// Share of the surface (or of the lines, without any) that is level with respect to an axis and
 /// lies at the two commonest of 60 heights: floors and ceilings.
-double gathered(const Mesh& mesh, int axis, double low, double high) {
-  std::array<double, 60> heights{};
+double gathered(const Mesh& mesh, int axis, const Heights& heights) {
+  std::array<double, 60> slices{};
   double all = 0;
   const auto add = [&](double at, double amount) {
-    const double share = high > low ? (at - low) / (high - low) : 0;
-    heights[std::min<std::size_t>(59, static_cast<std::size_t>(std::max(0.0, share * 60)))] +=
+    // A folded floor lies in the middle of a slice, not between the last and the first.
+    const double slice = 60 * heights.share(at) + (heights.is_folded ? 0.5 : 0);
+    slices[heights.is_folded ? static_cast<std::size_t>(slice) % 60
+                             : std::min<std::size_t>(59, static_cast<std::size_t>(slice))] +=
         amount;
   };
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -97,8 +119,8 @@ double gathered(const Mesh& mesh, int axis, double low, double high) {
       if (std::abs(q[axis] - p[axis]) < 0.02 * length) add(p[axis], length);
     }
   }
-  std::partial_sort(heights.begin(), heights.begin() + 2, heights.end(), std::greater<>());
-  return all > 0 ? (heights[0] + heights[1]) / all : 0;
+  std::partial_sort(slices.begin(), slices.begin() + 2, slices.end(), std::greater<>());
+  return all > 0 ? (slices[0] + slices[1]) / all : 0;
 }
 
 /// The axis of the largest value, if it is so many times the second.
@@ -142,17 +164,16 @@ bool may_lie(const Eigen::Vector3d& size, int axis) {
 }
 
 /// The axis for which two of three signs speak: walls that begin and end alike and are low, level
-/// surface at few heights, and the shortest extent.
-int up_axis_by_look(const Mesh& file, const std::string& place) {
-  const Mesh mesh = with_joined_faces(file);
-  if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
-  const auto [low, high] = extent_of(mesh);
-  std::array<double, 3> by_walls{}, by_floors{}, by_size{};
+/// surface at few heights, and the smallest height; of folded heights else that for which their
+/// product does.
+std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& heights) {
+  std::array<double, 3> by_walls{}, by_floors{}, by_size{}, by_all{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double size = std::max(high[axis] - low[axis], 1e-300);
-    by_walls[axis] = alike(uprights(mesh, axis), low[axis], high[axis]) / size;
-    by_floors[axis] = gathered(mesh, axis, low[axis], high[axis]);
+    const double size = std::max(heights[axis].size, 1e-300);
+    by_walls[axis] = alike(uprights(mesh, axis), heights[axis]) / size;
+    by_floors[axis] = gathered(mesh, axis, heights[axis]);
     by_size[axis] = 1 / size;
+    by_all[axis] = by_walls[axis] * by_floors[axis] * by_size[axis];
   }
   std::array<int, 3> votes{};
   for (const std::optional<int>& sign :
@@ -160,29 +181,58 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
     if (sign) ++votes[*sign];
   }
   for (int axis = 0; axis < 3; ++axis) {
-    if (votes[axis] >= 2 && !may_lie(high - low, axis)) return axis;
+    if (votes[axis] >= 2) return axis;
   }
+  const bool is_folded =
+      std::any_of(heights.begin(), heights.end(), [](const Heights& one) { return one.is_folded; });
+  return is_folded ? clear_winner(by_all, 1.3) : std::nullopt;
+}
+
+/// Up by the signs of one storey: a building of several is folded into one first. Where folding
+/// makes them unclear, as by walls at even distances, the whole building speaks, if what it says is
+/// up is the lowest way to see the building.
+int up_axis_by_look(const Mesh& file, const std::string& place) {
+  const Mesh mesh = with_joined_faces(file);
+  if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
+  const auto [low, high] = extent_of(mesh);
+  const Eigen::Vector3d size = high - low;
+  std::array<Heights, 3> whole, folded;
+  for (int axis = 0; axis < 3; ++axis) {
+    whole[axis] = folded[axis] = {low[axis], size[axis], false};
+    const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
+    if (storeys) folded[axis] = {storeys->first, storeys->height, true};
+  }
+  std::optional<int> up = voted_axis(mesh, folded);
+  if (!up) {
+    std::array<double, 3> by_size{};
+    for (int axis = 0; axis < 3; ++axis) by_size[axis] = 1 / std::max(folded[axis].size, 1e-300);
+    up = voted_axis(mesh, whole);
+    if (up && clear_winner(by_size, 1.2) != up) up.reset();
+  }
+  if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",
               "say so with --up x, y or z");
 }
 
-/// Sizes in metres with a unit: height, and the longer side of the plan.
-std::pair<double, double> height_and_length_m(const Mesh& mesh, int up, double unit_m) {
-  const auto [low, high] = extent_of(mesh);
-  const Eigen::Vector3d size = unit_m * (high - low);
-  return {size[up], std::max(size[(up + 1) % 3], size[(up + 2) % 3])};
-}
-
+/// The unit with which the storeys, else the whole height, are those of a building.
 const Unit& unit_by_look(const Mesh& mesh, int up, const std::string& place) {
-  for (const double highest : {8.0, 60.0}) {
+  const auto [low, high] = extent_of(mesh);
+  const Eigen::Vector3d size = high - low;
+  const double height = size[up], length = std::max(size[(up + 1) % 3], size[(up + 2) % 3]);
+  const std::optional<EvenStoreys> storeys = even_storeys(mesh, up);
+  for (const bool by_storeys : {true, false}) {
+    if (by_storeys && !storeys) continue;
     std::vector<const Unit*> fit;
     std::string sizes;
     for (const Unit& unit : units) {
-      const auto [height, length] = height_and_length_m(mesh, up, unit.metres);
-      if (!(height >= 1.8 && height <= highest && length >= 3 && length <= 500)) continue;
+      const double high_m = unit.metres * (by_storeys ? storeys->height : height);
+      const bool is_high = by_storeys ? high_m >= lowest_storey_m && high_m <= highest_storey_m
+                                      : high_m >= unit.lowest_m && high_m <= unit.highest_m;
+      const double length_m = unit.metres * length;
+      if (!is_high || length_m < shortest_m || length_m > longest_m) continue;
       fit.push_back(&unit);
       sizes += fmt::format("{}{} ({:.3g} m long, {:.3g} m high)", sizes.empty() ? "" : " or ",
-                           unit.name, length, height);
+                           unit.name, length_m, unit.metres * height);
     }
     if (fit.size() == 1) return *fit[0];
     if (fit.size() > 1) {
@@ -190,7 +240,6 @@ const Unit& unit_by_look(const Mesh& mesh, int up, const std::string& place) {
                   "say which with --unit");
     }
   }
-  const auto [height, length] = height_and_length_m(mesh, up, 1);
   throw Error(place,
               fmt::format("does not say its unit of length, and {:.3g} units long and {:.3g} high "
                           "it is no building in m, cm, mm, in or ft",
@@ -210,7 +259,7 @@ AxesAndUnit axes_and_unit(const Mesh& mesh,
     axes.up_because = "given";
   } else if (mesh.up_axis) {
     axes.up_axis = *mesh.up_axis;
-    axes.up_because = "by the file";
+    axes.up_because = mesh.up_because;
   } else {
     axes.up_axis = up_axis_by_look(mesh, place);
     axes.up_because = "by its shape";
@@ -220,7 +269,7 @@ AxesAndUnit axes_and_unit(const Mesh& mesh,
     axes.unit_because = "given";
   } else if (mesh.unit_m) {
     axes.unit_m = *mesh.unit_m;
-    axes.unit_because = "by the file";
+    axes.unit_because = mesh.unit_because;
   } else {
     axes.unit_m = unit_by_look(mesh, axes.up_axis, place).metres;
     axes.unit_because = "by its size";

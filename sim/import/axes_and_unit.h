@@ -18,8 +18,10 @@ struct AxesAndUnit {
 
 /// What is given, else what the file says, else what the mesh looks like: up is the axis for which
 /// two of three signs speak, which are walls that begin and end at common heights, level surface at
-/// few heights, and the shortest extent; the unit is that with which the building is 1.8 to 8 m
-/// high (else to 60 m) and 3 to 500 m long. Throws Error, asking, where that does not decide.
+/// few heights, and the smallest height, all of one storey where even_storeys() finds several; the
+/// unit is that with which its storeys are 2.2 to 6 m high or, of a building of one, its height is
+/// 2.2 to 22 m (1.8 to 60 m in metres, 2.2 to 60 m in millimetres), and 3 to 500 m its length.
+/// Throws Error, asking, where that does not decide.
 AxesAndUnit axes_and_unit(const Mesh& mesh,
                           std::optional<int> given_up,
                           std::optional<double> given_unit_m,

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/convex_faces.h"
+#include "sim/import/even_storeys.h"
 #include "sim/import/mesh.h"
 #include "sim/import/storeys.h"
 #include "sim/routing/floor_plan.h"
@@ -112,6 +114,75 @@ TEST(AxesAndUnit, AreRecognised) {
       EXPECT_NEAR(low.z(), 0, 1e-9);
     }
   }
+}
+
+/// Storeys of 16 x 11 m: a corridor between rows of rooms, slabs, and doors in the walls.
+Mesh block_of_offices(int storeys, double storey_m) {
+  Mesh mesh;
+  add_box(mesh, {-0.2, -0.2, -0.2}, {16.2, 11.2, 0});
+  for (int i = 0; i < storeys; ++i) {
+    const double low = i * storey_m, high = low + storey_m - 0.25;
+    const auto wall = [&](double x0, double y0, double x1, double y1) {
+      add_box(mesh, {x0, y0, low}, {x1, y1, high});
+    };
+    wall(-0.2, -0.2, 16.2, 0);
+    wall(-0.2, 11, 16.2, 11.2);
+    wall(-0.2, 0, 0, 11);
+    wall(16, 0, 16.2, 11);
+    for (const double y : {4.6, 6.4}) {
+      for (int k = 0; k < 4; ++k) wall(4.0 * k, y, 4.0 * k + 3, y + 0.1);
+    }
+    for (int k = 1; k < 4; ++k) {
+      wall(4.0 * k - 0.1, 0, 4.0 * k, 4.6);
+      wall(4.0 * k - 0.1, 6.5, 4.0 * k, 11);
+    }
+    add_box(mesh, {-0.2, -0.2, high}, {16.2, 11.2, high + 0.25});
+  }
+  return mesh;
+}
+
+// Property: a building of several storeys stands upright, and its unit is that of its storeys, not
+// of its height.
+TEST(AxesAndUnit, OfSeveralStoreysAreRecognised) {
+  for (const auto& [storeys, storey_m] :
+       {std::pair(2, 3.0), std::pair(3, 2.9), std::pair(4, 3.4), std::pair(7, 3.1)}) {
+    for (const int up : {0, 1, 2}) {
+      for (const double unit : {1.0, 0.01, 0.001, 0.3048}) {
+        const Mesh mesh = turned_and_scaled(block_of_offices(storeys, storey_m), up, unit);
+        const AxesAndUnit axes = axes_and_unit(mesh, {}, {}, "m.obj");
+        EXPECT_EQ(axes.up_axis, up) << storeys;
+        EXPECT_EQ(axes.unit_m, unit) << storeys;
+      }
+    }
+  }
+}
+
+// A hall of 10 m is one of 3 m if its unit is a foot, and so of inches and centimetres.
+TEST(AxesAndUnit, OfAHighHallAreAskedFor) {
+  Mesh hall;
+  add_box(hall, {0, 0, 0}, {60, 30, 10});
+  const auto said = [&](double unit_m) {
+    return error_message(
+        [&] { axes_and_unit(turned_and_scaled(hall, 2, unit_m), 2, {}, "m.obj"); });
+  };
+  EXPECT_EQ(said(1),
+            "m.obj: does not say its unit of length, which may be m (60 m long, 10 m high) or ft "
+            "(18.3 m long, 3.05 m high); say which with --unit");
+  EXPECT_NE(said(0.0254).find("may be cm (23.6 m long, 3.94 m high) or in ("), std::string::npos);
+  EXPECT_NE(said(0.3048).find("may be m ("), std::string::npos);
+  EXPECT_EQ(axes_and_unit(turned_and_scaled(hall, 2, 0.001), 2, {}, "m.obj").unit_m, 0.001);
+  EXPECT_EQ(axes_and_unit(turned_and_scaled(hall, 2, 0.01), 2, {}, "m.obj").unit_m, 0.01);
+}
+
+TEST(EvenStoreys, AreCountedAndMeasured) {
+  const Mesh mesh = block_of_offices(4, 3.4);
+  const auto storeys = even_storeys(mesh, 2);
+  ASSERT_TRUE(storeys);
+  EXPECT_EQ(storeys->count, 4);
+  EXPECT_NEAR(storeys->height, 3.4, 0.02);
+  EXPECT_FALSE(even_storeys(block_of_offices(1, 3), 2));
+  // Rooms in a row are no tower on its side.
+  EXPECT_FALSE(even_storeys(block_of_offices(1, 3), 0));
 }
 
 // A corridor that is narrower than it is high looks like a low one that lies on its side.

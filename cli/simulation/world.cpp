@@ -22,6 +22,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_picture.h"
+#include "cli/simulation/route_remarks.h"
 #include "cli/simulation/world_build.h"
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_sets.h"
@@ -231,6 +232,10 @@ void route(const RouteOptions& options, Session& session) {
     throw Error(file.string(), "no floor was found on which a robot can drive",
                 "give [[route]] points_m yourself");
   }
+  if (const std::string open = open_floor_text(proposal); !open.empty()) {
+    session.warn(file.string() + ": " + open);
+  }
+  if (proposal.other_m2 > 0) session.info(file.string() + ": " + floor_text(proposal));
   description.route = proposal.route;
   const World world = build_world(description);
   OutputFiles outputs;

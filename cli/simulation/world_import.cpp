@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -23,6 +24,7 @@
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/simulation/plan_picture.h"
+#include "cli/simulation/route_remarks.h"
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/camera_path.h"
 #include "sim/import/imported_world.h"
@@ -60,17 +62,62 @@ int axis_of(const std::string& word) {
   throw Error("--up " + vernier::internal::shortened(word), "is no axis", "use x, y or z");
 }
 
+/// Zero without the sign that rounding leaves it.
+double shown_m(double height_m) { return std::abs(height_m) < 0.005 ? 0 : height_m; }
+
 std::string storeys_text(const ImportReport& report, const sim::internal::ImportOptions& options) {
   const std::string ends =
-      report.top_m ? fmt::format(", up to {:.2f} m", *report.top_m) : std::string();
-  if (options.floor_m) return fmt::format("floor at {:.2f} m (given){}", report.floor_m, ends);
+      report.top_m ? fmt::format(", up to {:.2f} m", shown_m(*report.top_m)) : std::string();
+  const double floor_m = shown_m(report.floor_m);
+  if (options.floor_m) return fmt::format("floor at {:.2f} m (given){}", floor_m, ends);
   if (report.storeys_m.empty()) {
-    return fmt::format("no storeys found, floor at the lowest point, {:.2f} m{}", report.floor_m,
-                       ends);
+    return fmt::format("no storeys found, floor at the lowest point, {:.2f} m{}", floor_m, ends);
   }
-  if (report.storeys_m.size() == 1) return fmt::format("floor at {:.2f} m{}", report.floor_m, ends);
+  if (report.storeys_m.size() == 1) return fmt::format("floor at {:.2f} m{}", floor_m, ends);
+  std::vector<double> floors_m;
+  for (const double height_m : report.storeys_m) floors_m.push_back(shown_m(height_m));
   return fmt::format("floors at {:.2f} m; storey {} was taken, from {:.2f} m{}",
-                     fmt::join(report.storeys_m, ", "), options.storey, report.floor_m, ends);
+                     fmt::join(floors_m, ", "), options.storey, floor_m, ends);
+}
+
+std::string upright_text(const ImportReport& report) {
+  std::string text;
+  if (report.made_upright > 0) text = fmt::format("; {} made upright", report.made_upright);
+  if (report.levelled_deg > 0) {
+    text += fmt::format("; the building was levelled by {:.2f} degrees", report.levelled_deg);
+  }
+  return text;
+}
+
+/// Warns of a list of lines that does not look as if z were up.
+void doubt_axis_of_list(const Mesh& mesh, const ImportArguments& arguments, Session& session) {
+  constexpr std::size_t least_lines = 12;  // of a room
+  if (mesh.format != "list of lines" || mesh.lines.size() < least_lines ||
+      arguments.options.up_axis) {
+    return;
+  }
+  Mesh unsaid = mesh;
+  unsaid.up_axis.reset();
+  try {
+    const int up = axes_and_unit(unsaid, {}, 1, arguments.file).up_axis;
+    if (up == 2) return;
+    session.warn(fmt::format("{}: z is up in lists of lines, but by its shape {} is; see --up",
+                             arguments.file, static_cast<char>('x' + up)));
+  } catch (const Error&) {  // it does not show
+  }
+}
+
+/// Warns of a unit that nothing in a reconstruction from images shows.
+void doubt_unit_of_tracks(const Mesh& mesh,
+                          const ImportArguments& arguments,
+                          const ImportReport& report,
+                          Session& session) {
+  if (mesh.format != "line tracks" || !arguments.unit.empty()) return;
+  session.warn(
+      fmt::format("{}: images give no unit of length; {:g} m was taken because the lines "
+                  "are then as large as a building; say with --unit how many metres one "
+                  "is",
+                  arguments.file, report.axes.unit_m));
 }
 
 /// With --colmap: turns the mesh so that z is up, and finds its unit and its floor. The cameras are
@@ -107,6 +154,7 @@ void run(ImportArguments arguments, Session& session) {
     check_output_is_not_input(inputs, *output);
   }
   Mesh mesh = read_mesh(arguments.file, arguments.selection);
+  doubt_axis_of_list(mesh, arguments, session);
   const std::vector<PathCamera> cameras = level_by_cameras(arguments, mesh);
   if (mesh.doors > 0) {
     session.info(
@@ -116,7 +164,11 @@ void run(ImportArguments arguments, Session& session) {
   }
   ImportedWorld imported = import_world(mesh, options, arguments.file);
   ImportReport& report = imported.report;
-  if (!cameras.empty()) report.axes.up_because = "by its cameras";
+  if (!cameras.empty()) {
+    report.axes.up_because = "by its cameras";
+    if (arguments.unit.empty()) report.axes.unit_because = "by its size";
+  }
+  doubt_unit_of_tracks(mesh, arguments, report, session);
   WorldDescription& description = imported.world;
   description.name = arguments.name.empty() ? std::filesystem::path(arguments.file).stem().string()
                                             : arguments.name;
@@ -155,6 +207,9 @@ void run(ImportArguments arguments, Session& session) {
       session.warn(error.what());
     }
     description.route = proposal.route;
+    if (const std::string open = open_floor_text(proposal); !open.empty()) {
+      session.warn(arguments.file + ": " + open);
+    }
     if (proposal.route.empty()) {
       session.warn(
           arguments.file +
@@ -182,9 +237,8 @@ void run(ImportArguments arguments, Session& session) {
       : !cameras.empty() && !arguments.no_route
           ? fmt::format("the way of its {} cameras, {:.1f} m in {} legs, is the route\n",
                         cameras.size(), length_m, world.route.size())
-          : fmt::format(
-                "a route of {:.1f} m in {} legs, within 2 m of {:.0f} of {:.0f} m2 of floor\n",
-                length_m, world.route.size(), proposal.near_m2, proposal.floor_m2);
+          : fmt::format("a route of {:.1f} m in {} legs, {}\n", length_m, world.route.size(),
+                        floor_text(proposal));
   session.result(
       {{"file", arguments.output},
        {"format", mesh.format},
@@ -200,6 +254,8 @@ void run(ImportArguments arguments, Session& session) {
        {"edges", report.edges},
        {"edges_of_other_storeys", report.outside},
        {"edges_too_short", report.shorter},
+       {"edges_made_upright", report.made_upright},
+       {"levelled_deg", report.levelled_deg},
        {"segments", world.segments.size()},
        {"corners", world.corners.size()},
        {"surfaces", world.surfaces.size()},
@@ -208,17 +264,18 @@ void run(ImportArguments arguments, Session& session) {
        {"route_m", length_m},
        {"legs", world.route.size()},
        {"floor_m2", proposal.floor_m2},
-       {"floor_near_route_m2", proposal.near_m2}},
+       {"floor_near_route_m2", proposal.near_m2},
+       {"floor_cut_off_m2", proposal.other_m2}},
       fmt::format("{}: {}, {} triangles and {} lines\n"
                   "  {} is up ({}), a unit is {:g} m ({}); {}\n{}"
-                  "  {} edges, of them {} in other storeys and {} shorter than {:g} m\n"
+                  "  {} edges, of them {} in other storeys and {} shorter than {:g} m{}\n"
                   "{}: {:.1f} x {:.1f} x {:.1f} m, {} segments, {} corners, {} surfaces\n  {}",
                   arguments.file, mesh.format, report.triangles, report.lines, axis,
                   report.axes.up_because, report.axes.unit_m, report.axes.unit_because,
                   storeys_text(report, options), moved, report.edges, report.outside,
-                  report.shorter, options.shortest_m, arguments.output, size.x(), size.y(),
-                  size.z(), world.segments.size(), world.corners.size(), world.surfaces.size(),
-                  route));
+                  report.shorter, options.shortest_m, upright_text(report), arguments.output,
+                  size.x(), size.y(), size.z(), world.segments.size(), world.corners.size(),
+                  world.surfaces.size(), route));
 }
 
 }  // namespace
@@ -233,8 +290,9 @@ void add_world_import(CLI::App& world, Session& session) {
   verb->add_option("file", o->file, "mesh or lines (docs/worlds.md)")->required();
   verb->add_option("-o,--output", o->output, "world file")->required();
   verb->add_option("--name", o->name, "name of the world (default: of the file)");
-  verb->add_option("--unit", o->unit,
-                   "of length: m, cm, mm, in, ft or metres (default: the file's, or by its size)");
+  verb->add_option(
+      "--unit", o->unit,
+      "of length: m, cm, mm, in, ft, or a number of metres (default: the file's, or by its size)");
   verb->add_option("--up", o->up, "axis: x, y or z (default: the file's, or by its shape)");
   verb->add_option("--storey", o->options.storey, "from the lowest, of those found")
       ->check(CLI::Range(1, 1000))
@@ -251,6 +309,10 @@ void add_world_import(CLI::App& world, Session& session) {
       ->capture_default_str();
   verb->add_option("--shortest-m", o->options.shortest_m, "shorter edges are left out")
       ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  verb->add_option("--upright-deg", o->options.upright_deg,
+                   "edges that lean by less become upright (0: none)")
+      ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
   verb->add_option("--colmap", o->colmap,
                    "folder of the model (images.txt) that the line tracks were made with: says "

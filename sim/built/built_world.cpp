@@ -14,6 +14,7 @@
 #include "sim/built/planar_patches.h"
 #include "sim/built/upright_line.h"
 #include "sim/import/camera_path.h"
+#include "sim/import/levelled.h"
 #include "sim/world.h"
 #include "sim/world/plan_distance.h"
 

@@ -15,7 +15,4 @@ namespace vernier::sim::internal {
 /// chance (χ² with 2 degrees of freedom).
 bool may_be_upright(const localise::JoinedLine& line, double most_rad);
 
-/// Moves both ends over the middle on the floor plan, at their heights.
-void make_upright(Eigen::Vector3d& a_m, Eigen::Vector3d& b_m);
-
 }  // namespace vernier::sim::internal

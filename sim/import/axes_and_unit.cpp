@@ -164,7 +164,7 @@ bool may_lie(const Eigen::Vector3d& size, int axis) {
 }
 
 /// The axis for which two of three signs speak: walls that begin and end alike and are low, level
-/// surface at few heights, and the smallest height; of folded heights else that for which their
+/// surface at few heights, and the smallest height; between two foldings else that for which their
 /// product does.
 std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& heights) {
   std::array<double, 3> by_walls{}, by_floors{}, by_size{}, by_all{};

@@ -95,11 +95,12 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
         all += area.near(levels[i] + floors * storey, within);
       }
       // Below the first may lie a cellar or a higher ground floor, and above the last a storey and
-      // a roof; two levels alone make a row anywhere.
+      // a roof. Two levels alone make a row anywhere: the upper storey must be as high.
       const double below = levels[i] - low[axis];
       const double above = high[axis] - (levels[i] + (floors - 1) * storey);
-      const bool is_row = floors > 2 ? below < 2 * storey && above < 2 * storey
-                                     : below < 0.4 * storey && above < 1.4 * storey;
+      const bool is_row =
+          floors > 2 ? below < 2 * storey && above < 2 * storey
+                     : below < 0.4 * storey && above > 0.85 * storey && above < 1.4 * storey;
       const int count = floors - (above < 0.6 * storey ? 1 : 0);
       if (!is_row || count < 2 || all <= most) continue;
       most = all;

@@ -9,12 +9,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "calib/error.h"
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/convex_faces.h"
 #include "sim/import/crease_edges.h"
+#include "sim/import/levelled.h"
 #include "sim/import/mesh.h"
 #include "sim/import/point_grid.h"
 #include "sim/import/storeys.h"
@@ -154,6 +156,10 @@ ImportedWorld import_world(const Mesh& mesh,
                             largest_coordinate_m / 1000, report.axes.unit_m),
                 "give --unit, or export one building");
   }
+  if (const std::optional<Eigen::Vector3d> up = leaning_up(building)) {
+    report.levelled_deg = lean_rad(Eigen::Vector3d::Zero(), *up) * 180 / std::numbers::pi;
+    building = levelled(std::move(building), *up);
+  }
   building = welded(building, weld_m);
   std::vector<Polygon> faces = convex_faces(building);
   const auto [floor, top] = heights_of(options, building, faces, lift, place, report);
@@ -189,6 +195,14 @@ ImportedWorld import_world(const Mesh& mesh,
     features.surfaces_m.push_back(std::move(part));
   }
   features.corners_m = corners_of(features.segments_m);
+  for (auto& [a, b] : features.segments_m) {
+    const double lean_deg = lean_rad(a, b) * 180 / std::numbers::pi;
+    if (lean_deg == 0 || lean_deg > options.upright_deg) continue;
+    make_upright(a, b);
+    a = to_tenth_mm(a);
+    b = to_tenth_mm(b);
+    ++report.made_upright;
+  }
   if (features.segments_m.empty()) {
     throw Error(place,
                 fmt::format("has no edges of at least {:g} m in the storey (floor at {:g} m)",

@@ -21,6 +21,7 @@ struct ImportOptions {
   std::optional<double> top_m;    ///< how high above the floor the world ends
   double crease_deg = 20;         ///< surfaces that meet at a smaller angle make no edge
   double shortest_m = 0.1;        ///< shorter edges are left out
+  double upright_deg = 0.3;       ///< edges that lean by less become exactly upright; 0: none
 };
 
 struct ImportReport {
@@ -33,6 +34,8 @@ struct ImportReport {
   std::size_t edges = 0;                               ///< that one would see, of all storeys
   std::size_t outside = 0;                             ///< of them above or below the storey
   std::size_t shorter = 0;                             ///< of them left out
+  std::size_t made_upright = 0;                        ///< of those in the world
+  double levelled_deg = 0;                             ///< by which the building leaned
 };
 
 struct ImportedWorld {
@@ -41,9 +44,11 @@ struct ImportedWorld {
 };
 
 /// A world of one storey of a building: its edges (crease_edges), the corners where they meet, its
-/// surfaces (convex_faces), with the floor at z = 0. The plan keeps its coordinates unless they are
-/// more than 1 km from the origin. All features are loose ones. Throws Error(place) where nothing
-/// is left, for too many triangles, coordinates that are not finite, and as axes_and_unit() does.
+/// surfaces (convex_faces), with the floor at z = 0. A building that leans (leaning_up) is
+/// levelled, and edges that are nearly upright become so, which the world's ceiling goes by. The
+/// plan keeps its coordinates unless they are more than 1 km from the origin. All features are
+/// loose ones. Throws Error(place) where nothing is left, for too many triangles, coordinates that
+/// are not finite, and as axes_and_unit() does.
 ImportedWorld import_world(const Mesh& mesh,
                            const ImportOptions& options,
                            const std::string& place);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "calib/error.h"
+#include "sim/routing/closed_bodies.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility/convex_pieces.h"
@@ -21,7 +22,8 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double wide_m = 2;    // a gap in the walls through which the outside comes in
+constexpr double wide_m =
+    FloorPlan::widest_gap_m;    // a gap in the walls through which the outside comes in
 constexpr double around_m = 2;  // of the plan, around the world
 
 constexpr std::array<std::pair<int, int>, 4> four_sides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -68,20 +70,96 @@ FloorPlan::FloorPlan(const World& world, double eye_height_m) {
     for (int x = 0; x < width_; ++x) free_[index(x, y)] = standing.is_free(centre_m(x, y));
   }
   block_below(world, eye_height_m + robot_top_m);
-  const std::vector<bool> outside = outdoors();
+  choose_inside(world);
+  clearance_ = distances_to_others(inside_);
+}
+
+/// Takes what is enclosed, else floor that is open to the surroundings, else the inside of a body
+/// (of a room without thickness, too, the surfaces may face outwards), else all that is free.
+void FloorPlan::choose_inside(const World& world) {
+  const std::size_t count = free_.size();
+  const std::vector<bool> outside = outdoors(wide_m);
   std::vector<bool> indoors(count);
   for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && !outside[i];
   leave_out_holes(world, indoors);
-  inside_ = largest_part(indoors);
-  constexpr double least_m2 = 4;  // a room
-  // Without walls around, the floor that there is.
-  if (inside_m2() < least_m2) {
-    const std::vector<bool> floored = over_floor(world);
-    for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && floored[i];
-    inside_ = largest_part(indoors);
+  const ClosedBodies bodies(world);
+  if (take_largest(indoors, bodies)) return;
+  const std::vector<bool> floored = over_floor(world);
+  std::vector<bool> open(count);
+  for (std::size_t i = 0; i < count; ++i) open[i] = free_[i] && floored[i];
+  is_open_ = true;
+  if (take_largest(open, bodies)) {
+    gap_m_ = gap_into_inside();
+    return;
   }
-  if (inside_m2() < least_m2) inside_ = largest_part(free_);
-  clearance_ = distances_to_others(inside_);
+  is_open_ = false;
+  const ClosedBodies none(World{});
+  if (take_largest(indoors, none) || take_largest(open, none)) return;
+  is_open_ = true;
+  inside_ = largest_part(free_);
+}
+
+/// Makes the largest connected part of the cells that is no inside of a body the inside, if it is
+/// as large as a room, and adds up the others.
+bool FloorPlan::take_largest(const std::vector<bool>& cells, const ClosedBodies& bodies) {
+  constexpr double least_m2 = 4;            // a room
+  constexpr double least_other_m2 = 1;      // more than what is left behind a table
+  constexpr float least_other_m = 0.3f;     // half as wide, unlike the inside of a wall
+  constexpr std::size_t most_others = 200;  // to look at, the largest first
+  constexpr double cell_m2 = cell_m * cell_m;
+  const std::vector<std::vector<std::size_t>> parts = parts_of(cells);
+  const std::vector<float> clearances = distances_to_others(cells);
+  bool is_found = false;
+  for (std::size_t n = 0; n < std::min(parts.size(), most_others); ++n) {
+    const double size_m2 = cell_m2 * static_cast<double>(parts[n].size());
+    if (size_m2 < (is_found ? least_other_m2 : least_m2)) break;
+    if (is_in_body(parts[n], bodies)) continue;
+    if (is_found) {
+      const bool is_wide = std::any_of(parts[n].begin(), parts[n].end(), [&](std::size_t i) {
+        return clearances[i] >= least_other_m;
+      });
+      if (is_wide) other_m2_ += size_m2;
+      continue;
+    }
+    is_found = true;
+    inside_.assign(free_.size(), false);
+    for (const std::size_t i : parts[n]) inside_[i] = true;
+  }
+  return is_found;
+}
+
+/// Whether most of 20 cells of a part, evenly chosen, lie inside of bodies at the robot's height.
+bool FloorPlan::is_in_body(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const {
+  constexpr std::size_t samples = 20;
+  constexpr double height_m = 0.5;
+  const std::size_t step = std::max<std::size_t>(1, part.size() / samples);
+  std::size_t looked = 0, within = 0;
+  for (std::size_t k = step / 2; k < part.size(); k += step) {
+    const auto width = static_cast<std::size_t>(width_);
+    const Eigen::Vector2d at =
+        centre_m(static_cast<int>(part[k] % width), static_cast<int>(part[k] / width));
+    // Off the middle of the cell, lest a ray meets the edge between two surfaces.
+    within += bodies.contain({at.x() + 0.0137, at.y() + 0.0173, height_m});
+    ++looked;
+  }
+  return 2 * within > looked;
+}
+
+/// The width of the gap through which the surroundings come into half of the inside, to about
+/// 0.3 m; 0 where there are none that keep them out.
+double FloorPlan::gap_into_inside() const {
+  constexpr double step_m = 0.25, widest_m = 10;
+  for (double free_m = widest_gap_m + step_m; free_m <= widest_m; free_m += step_m) {
+    const std::vector<bool> outside = outdoors(free_m);
+    std::size_t cells = 0, kept = 0;
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+      cells += inside_[i];
+      kept += inside_[i] && !outside[i];
+    }
+    // What is free keeps the robot's radius from both posts.
+    if (2 * kept > cells) return free_m - step_m / 2 + 2 * robot_radius_m;
+  }
+  return 0;
 }
 
 /// Cells where a surface lies between the floor and the robot's top: a ceiling, a roof, a ramp.
@@ -135,10 +213,10 @@ void FloorPlan::flood(std::vector<std::size_t>& reached, std::vector<bool>& left
   }
 }
 
-std::vector<bool> FloorPlan::outdoors() const {
+std::vector<bool> FloorPlan::outdoors(double gap_m) const {
   const std::vector<float> room = distances_to_others(free_, true);
   std::vector<bool> left(free_.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = room[i] >= wide_m / 2;
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = room[i] >= gap_m / 2;
   std::vector<std::size_t> outside;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
@@ -156,7 +234,7 @@ std::vector<bool> FloorPlan::outdoors() const {
   for (std::size_t i = 0; i < reached.size(); ++i) others[i] = !reached[i];
   const std::vector<float> away = distances_to_others(others, true);
   for (std::size_t i = 0; i < reached.size(); ++i) {
-    reached[i] = reached[i] || (free_[i] && away[i] <= wide_m / 2);
+    reached[i] = reached[i] || (free_[i] && away[i] <= gap_m / 2);
   }
   return reached;
 }
@@ -194,18 +272,25 @@ void FloorPlan::visit_cells(const WorldSurface& surface,
   }
 }
 
-std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {
+std::vector<std::vector<std::size_t>> FloorPlan::parts_of(const std::vector<bool>& cells) const {
   std::vector<bool> left = cells;
-  std::vector<std::size_t> best;
+  std::vector<std::vector<std::size_t>> parts;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!left[i]) continue;
     left[i] = false;
-    std::vector<std::size_t> part{i};
-    flood(part, left);
-    if (part.size() > best.size()) best = std::move(part);
+    parts.push_back({i});
+    flood(parts.back(), left);
   }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return parts;
+}
+
+std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {
   std::vector<bool> largest(cells.size());
-  for (const std::size_t i : best) largest[i] = true;
+  const std::vector<std::vector<std::size_t>> parts = parts_of(cells);
+  if (parts.empty()) return largest;
+  for (const std::size_t i : parts[0]) largest[i] = true;
   return largest;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "sim/routing/closed_bodies.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -15,6 +16,7 @@ namespace vernier::sim::internal {
 class FloorPlan {
  public:
   static constexpr double cell_m = 0.15;
+  static constexpr double widest_gap_m = 2;  ///< through which the surroundings do not come in
 
   /// The robot's camera is at `eye_height_m`. Of a world without surfaces its lines on the floor
   /// and at the robot's height stand for walls. Throws Error if the floor is larger than about
@@ -32,22 +34,36 @@ class FloorPlan {
 
   /// Whether the cell belongs to the largest part of the floor that is inside: free, and not
   /// connected with the surroundings of the world through gaps wider than 2 m, so that outer doors
-  /// may stand open, and not over a hole in a floor that most of it has; in a world without walls
-  /// around, free and over a floor, or just free.
+  /// may stand open, not over a hole in a floor that most of it has, and not inside a closed body;
+  /// in a world without walls around, free and over a floor, or just free.
   bool inside(int x, int y) const { return inside_[index(x, y)]; }
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
   double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
   double inside_m2() const;
+  /// Of what could be inside too, but has no way to it that a robot fits through: rooms behind
+  /// closed doors, other buildings.
+  double other_m2() const { return other_m2_; }
+  /// Whether no floor is enclosed, so that the inside is open to the surroundings; and the width of
+  /// the gap by which it is, to about 0.3 m (0: there are no walls around).
+  bool is_open() const { return is_open_; }
+  double gap_m() const { return gap_m_; }
 
  private:
+  void choose_inside(const World& world);
+  bool take_largest(const std::vector<bool>& cells, const ClosedBodies& bodies);
+  bool is_in_body(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const;
+  double gap_into_inside() const;
   void block_below(const World& world, double top_m);
   void leave_out_holes(const World& world, std::vector<bool>& indoors) const;
   void visit_cells(const WorldSurface& surface, const std::function<void(int, int)>& visit) const;
   /// Adds to the cells that are reached those that border on them, and takes them out of what is
   /// left, until nothing that is left borders on them.
   void flood(std::vector<std::size_t>& reached, std::vector<bool>& left) const;
-  std::vector<bool> outdoors() const;
+  /// What gaps wider than `gap_m` connect with the surroundings of the world.
+  std::vector<bool> outdoors(double gap_m) const;
   std::vector<bool> over_floor(const World& world) const;
+  /// Connected parts, the largest first.
+  std::vector<std::vector<std::size_t>> parts_of(const std::vector<bool>& cells) const;
   std::vector<bool> largest_part(const std::vector<bool>& cells) const;
   /// From each cell of a set to the nearest of the others (0 in these), by two passes of chamfer
   /// steps (Borgefors, Computer Vision, Graphics, and Image Processing 34, 1986), 8 % too long or
@@ -59,6 +75,8 @@ class FloorPlan {
   int width_ = 0, height_ = 0;
   std::vector<bool> free_, inside_;
   std::vector<float> clearance_;
+  bool is_open_ = false;
+  double gap_m_ = 0, other_m2_ = 0;
 };
 
 }  // namespace vernier::sim::internal

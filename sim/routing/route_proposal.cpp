@@ -160,6 +160,9 @@ RouteLeg straightened(const FloorPlan& plan, const std::vector<Cell>& way) {
 RouteProposal propose_route(const FloorPlan& plan) {
   RouteProposal proposal;
   proposal.floor_m2 = plan.inside_m2();
+  proposal.other_m2 = plan.other_m2();
+  proposal.is_open = plan.is_open();
+  proposal.gap_m = plan.gap_m();
   Cell any;
   for (int y = 0; y < plan.height() && any.x < 0; ++y) {
     for (int x = 0; x < plan.width() && any.x < 0; ++x) {

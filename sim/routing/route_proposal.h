@@ -11,8 +11,11 @@ namespace vernier::sim::internal {
 
 struct RouteProposal {
   std::vector<RouteLeg> route;
-  double floor_m2 = 0;  ///< inside, free for a robot
-  double near_m2 = 0;   ///< of it within 2 m of the route, on the way of a robot
+  double floor_m2 = 0;   ///< inside, free for a robot
+  double near_m2 = 0;    ///< of it within 2 m of the route, on the way of a robot
+  double other_m2 = 0;   ///< beside it, to which the robot has no way: behind closed doors
+  bool is_open = false;  ///< no floor is enclosed; the route is on what is open to the surroundings
+  double gap_m = 0;      ///< by a gap about so wide; 0: there are no walls around
 };
 
 /// A route that leads through all of a free floor that is inside: the longest way first, then a leg

@@ -263,6 +263,11 @@ WorldDescription parse_world(const std::string& text, const std::string& place) 
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {
+  for (const char* ending : {".obj", ".ply", ".dae", ".ifc", ".gltf", ".glb", ".stl", ".fbx"}) {
+    if (file.extension() != ending) continue;
+    throw Error(file.string(), "is a mesh, not a world file",
+                "import it first: vernier world import");
+  }
   return parse_world(read_whole(file), file.string());
 }
 

@@ -4,12 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 
+#include "calib/statistics/random.h"
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/convex_faces.h"
 #include "sim/import/even_storeys.h"
@@ -18,6 +23,7 @@
 #include "sim/routing/floor_plan.h"
 #include "sim/routing/route_proposal.h"
 #include "sim/study/free_floor.h"
+#include "sim/study/upright_edges.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/sim/import/made_meshes.h"
@@ -245,6 +251,75 @@ TEST(ImportedWorld, IsTheSameInAnyUnitAndAxis) {
   EXPECT_NEAR(moved.report.floor_m, 120, 1e-6);
 }
 
+Mesh leaning(Mesh mesh, double degrees, const Eigen::Vector3d& about) {
+  const Eigen::AngleAxisd lean(degrees * std::numbers::pi / 180, about.normalized());
+  for (Eigen::Vector3d& v : mesh.vertices) v = lean * v;
+  return mesh;
+}
+
+int count_upright(const WorldDescription& world) {
+  return static_cast<int>(
+      std::count_if(world.loose.segments_m.begin(), world.loose.segments_m.end(),
+                    [](const auto& segment) { return is_upright(segment.first, segment.second); }));
+}
+
+// Property: a building out of level is the one in level, and says so.
+TEST(ImportedWorld, IsLevelledIfFloorAndWallsLean) {
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const ImportedWorld plain = import_world(test::house(), options, "m.obj");
+  EXPECT_EQ(plain.report.levelled_deg, 0);
+  EXPECT_EQ(plain.report.made_upright, 0u);
+  for (const double degrees : {0.005, 0.05, 0.4, 2.5}) {
+    for (const Eigen::Vector3d& about :
+         {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, -2, 0)}) {
+      const ImportedWorld other =
+          import_world(leaning(test::house(), degrees, about), options, "m.obj");
+      EXPECT_NEAR(other.report.levelled_deg, degrees < 0.02 ? 0 : degrees, 1e-3);
+      EXPECT_EQ(other.world.loose.segments_m.size(), plain.world.loose.segments_m.size());
+      EXPECT_EQ(count_upright(other.world), count_upright(plain.world)) << degrees;
+    }
+  }
+}
+
+// A floor that rises between upright walls stays as it is.
+TEST(ImportedWorld, IsNotLevelledByARamp) {
+  Mesh mesh = test::house(0, false);
+  add_rectangle(mesh, {0, 0, 0}, {8.1, 0, 0.3}, {0, 3, 0});
+  add_rectangle(mesh, {0, 0, 2.1}, {8.1, 0, 0.3}, {0, 3, 0});
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  EXPECT_EQ(import_world(mesh, options, "m.obj").report.levelled_deg, 0);
+}
+
+// Vertices that jitter by a third of a millimetre leave no edge exactly upright.
+TEST(ImportedWorld, NearlyUprightEdgesBecomeUpright) {
+  Mesh mesh = test::house();
+  vernier::internal::RandomStream draws({.seed = 4});
+  std::map<std::array<double, 3>, Eigen::Vector3d> moved;
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    const auto [at, is_new] = moved.try_emplace({v.x(), v.y(), v.z()});
+    if (is_new) at->second = v + 1e-4 * Eigen::Vector3d(draws.normal(), draws.normal(), 0);
+    v = at->second;
+  }
+  ImportOptions options;
+  const ImportedWorld snapped = import_world(mesh, options, "m.obj");
+  options.upright_deg = 0;
+  const ImportedWorld kept = import_world(mesh, options, "m.obj");
+  EXPECT_EQ(kept.report.made_upright, 0u);
+  EXPECT_GT(snapped.report.made_upright, 20u);
+  EXPECT_GE(count_upright(snapped.world),
+            count_upright(import_world(test::house(), {}, "m.obj").world) - 1);
+  EXPECT_LT(count_upright(kept.world), 8);
+  EXPECT_EQ(snapped.world.loose.segments_m.size(), kept.world.loose.segments_m.size());
+  for (std::size_t i = 0; i < kept.world.loose.segments_m.size(); ++i) {
+    const Segment &was = kept.world.loose.segments_m[i], &is = snapped.world.loose.segments_m[i];
+    EXPECT_LT((was.first - is.first).norm() + (was.second - is.second).norm(), 2e-3);
+  }
+}
+
 TEST(ImportedWorld, IsOneStorey) {
   ImportOptions options;
   options.up_axis = 2;
@@ -327,6 +402,79 @@ TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
     EXPECT_LT(pose.x_m, 9.1);
   }
   EXPECT_TRUE(propose_route(FloorPlan(world, 1.2)).route.size() > 0);
+}
+
+/// A plot of 30 x 20 m with two houses that are solid blocks; `has_ground_below` if the ground goes
+/// on below them. A fence 1.8 m high with a gate of this width; none for a width below 0.
+World plot(bool has_ground_below, double gate_m) {
+  Mesh mesh;
+  if (has_ground_below) {
+    add_box(mesh, {0, 0, -0.2}, {30, 20, 0});
+  } else {
+    add_rectangle(mesh, {0, 0, 0}, {30, 0, 0}, {0, 4, 0});
+    add_rectangle(mesh, {0, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {13, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {26, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {0, 13, 0}, {30, 0, 0}, {0, 7, 0});
+  }
+  add_box(mesh, {4, 4, 0}, {13, 13, 5});
+  add_box(mesh, {17, 4, 0}, {26, 13, 6});
+  if (gate_m >= 0) {
+    add_box(mesh, {0, 0, 0}, {12, 0.1, 1.8});
+    add_box(mesh, {12 + gate_m, 0, 0}, {30, 0.1, 1.8});
+    add_box(mesh, {0, 19.9, 0}, {30, 20, 1.8});
+    add_box(mesh, {0, 0.1, 0}, {0.1, 19.9, 1.8});
+    add_box(mesh, {29.9, 0.1, 0}, {30, 19.9, 1.8});
+  }
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  return build_world(import_world(mesh, options, "m.obj").world);
+}
+
+// Property: on a plot the route is in the yard, never inside of a solid house, and its openness is
+// told.
+TEST(ProposedRoute, KeepsOutOfSolidBodies) {
+  for (const bool has_ground_below : {false, true}) {
+    for (const double gate_m : {-1.0, 0.0, 1.5, 3.2}) {
+      const World world = plot(has_ground_below, gate_m);
+      const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
+      ASSERT_GT(route_length_m(proposal.route), 60) << has_ground_below << ' ' << gate_m;
+      for (double s = 0; s < route_length_m(proposal.route); s += 0.2) {
+        const auto pose = route_point(proposal.route, s).pose;
+        EXPECT_FALSE(pose.y_m > 4 && pose.y_m < 13 && pose.x_m > 4 && pose.x_m < 26 &&
+                     !(pose.x_m > 13 && pose.x_m < 17));
+      }
+      EXPECT_NEAR(proposal.floor_m2, 600 - 162, 60);
+      EXPECT_EQ(proposal.other_m2, 0);
+      EXPECT_EQ(proposal.is_open, gate_m < 0 || gate_m > 2);
+      EXPECT_NEAR(proposal.gap_m, gate_m > 2 ? gate_m : 0, 0.3);
+    }
+  }
+}
+
+// A room whose only surfaces face outwards is a room if there is nothing else.
+TEST(ProposedRoute, IsInARoomWithoutThickness) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, 0}, {8, 6, 2.6});
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, {}, "m.obj").world), 1.2));
+  EXPECT_GT(route_length_m(proposal.route), 3);
+  EXPECT_NEAR(proposal.floor_m2, 48 - 4, 3);
+  EXPECT_FALSE(proposal.is_open);
+}
+
+TEST(ProposedRoute, SaysWhatIsCutOff) {
+  Mesh mesh = test::house();
+  add_box(mesh, {4.02, 1, 0}, {4.06, 2, 2.1});  // its inner door, closed
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, {}, "m.obj").world), 1.2));
+  EXPECT_NEAR(proposal.floor_m2, 4 * 2.7, 1.5);
+  EXPECT_NEAR(proposal.other_m2, 4 * 2.7, 1.5);
+  EXPECT_EQ(
+      propose_route(FloorPlan(build_world(import_world(test::house(), {}, "m.obj").world), 1.2))
+          .other_m2,
+      0);
 }
 
 TEST(ProposedRoute, IsEmptyWithoutFloor) {

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/route_remarks.h"
+
+#include <fmt/format.h>
+
+#include "sim/routing/floor_plan.h"
+#include "sim/routing/route_proposal.h"
+#include "sim/study/standing_place.h"
+
+namespace vernier::cli {
+
+std::string floor_text(const RouteProposal& proposal) {
+  const double all_m2 = proposal.floor_m2 + proposal.other_m2;
+  std::string text =
+      fmt::format("within 2 m of {:.0f} of {:.0f} m2 of floor", proposal.near_m2, all_m2);
+  if (proposal.other_m2 > 0) {
+    text += fmt::format("; {:.0f} m2 are not connected with it by a way of {:g} m",
+                        proposal.other_m2, 2 * sim::internal::robot_radius_m);
+  }
+  return text;
+}
+
+std::string open_floor_text(const RouteProposal& proposal) {
+  if (!proposal.is_open || proposal.route.empty()) return {};
+  const double widest_m = sim::internal::FloorPlan::widest_gap_m;
+  if (proposal.gap_m == 0) {
+    return fmt::format(
+        "no floor is enclosed by walls without gaps of {:g} m and more; the route "
+        "is on open floor",
+        widest_m);
+  }
+  return fmt::format(
+      "the floor of the route is open to the surroundings by a gap of about {:.1f} m",
+      proposal.gap_m);
+}
+
+}  // namespace vernier::cli

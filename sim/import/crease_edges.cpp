@@ -153,17 +153,22 @@ class Joiner {
   }
 
  private:
-  /// Adds to the end of a chain what continues it.
+  /// Adds to the end of a chain what continues it: in the direction of its last piece, or, since
+  /// rounding turns short pieces, of all of it as far as rounded ends allow.
   void extend(std::vector<Vertex>& chain) {
     for (;;) {
       const Vertex end = chain.back();
-      const Eigen::Vector3d d = direction(chain[chain.size() - 2], end);
-      double best = std::cos(options_.straight_rad);
+      const Eigen::Vector3d last = direction(chain[chain.size() - 2], end);
+      const Eigen::Vector3d all = direction(chain.front(), end);
+      double best = 0;
       std::size_t next = pieces_.size();
       for (const std::size_t i : of_vertex_[end]) {
         if (used_[i]) continue;
-        const double straight = d.dot(direction(end, other(i, end)));
-        if (straight > best) {
+        const Eigen::Vector3d d = direction(end, other(i, end));
+        const double straight = std::max(last.dot(d), all.dot(d));
+        const bool continues = last.dot(d) > std::cos(options_.straight_rad) ||
+                               all.dot(d) > std::cos(rounded_rad(chain, other(i, end)));
+        if (continues && straight > best) {
           best = straight;
           next = i;
         }
@@ -176,6 +181,13 @@ class Joiner {
       }
       used_[next] = true;
     }
+  }
+  /// By how much a straight chain and a piece at its end may turn because coordinates are rounded.
+  double rounded_rad(const std::vector<Vertex>& chain, Vertex next) const {
+    const Eigen::Vector3d &a = mesh_.vertices[chain.front()], &b = mesh_.vertices[chain.back()];
+    const double rad = options_.rounding_m / std::max((b - a).norm(), 1e-9) +
+                       options_.rounding_m / std::max((mesh_.vertices[next] - b).norm(), 1e-9);
+    return std::min(rad, options_.most_rounded_rad);
   }
   bool is_straight(const std::vector<Vertex>& chain) const {
     const Eigen::Vector3d a = mesh_.vertices[chain.front()];

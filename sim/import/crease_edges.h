@@ -9,9 +9,11 @@
 namespace vernier::sim::internal {
 
 struct CreaseOptions {
-  double crease_rad = 0.35;     ///< surfaces that meet at a smaller angle make no edge
-  double within_m = 1e-3;       ///< vertices so near to an edge lie on it
-  double straight_rad = 0.005;  ///< pieces that continue each other so straight are one edge
+  double crease_rad = 0.35;       ///< surfaces that meet at a smaller angle make no edge
+  double within_m = 1e-3;         ///< vertices so near to an edge lie on it
+  double straight_rad = 0.005;    ///< pieces that continue each other so straight are one edge
+  double rounding_m = 0;          ///< of vertices, by which short pieces may turn more
+  double most_rounded_rad = 0.1;  ///< but not by so much, as at round things
 };
 
 /// The edges of a welded mesh that one would see: where it ends, where two of its planes meet at an

@@ -94,6 +94,18 @@ Eigen::Vector3d far_origin_m(const Mesh& mesh) {
   return origin;
 }
 
+/// To what coordinates are rounded that are nearly all whole millimetres; else 0.
+double rounding_m(const Mesh& mesh) {
+  constexpr double step_m = 1e-3, off = 0.05, nearly_all = 0.99;
+  std::size_t whole = 0;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    for (const double x : v) whole += std::abs(x / step_m - std::round(x / step_m)) < off;
+  }
+  return static_cast<double>(whole) > nearly_all * 3 * static_cast<double>(mesh.vertices.size())
+             ? step_m
+             : 0;
+}
+
 /// Points where at least two segments end.
 std::vector<Eigen::Vector3d> corners_of(const std::vector<Segment>& segments) {
   constexpr double same_m = 1e-3;
@@ -156,6 +168,9 @@ ImportedWorld import_world(const Mesh& mesh,
                             largest_coordinate_m / 1000, report.axes.unit_m),
                 "give --unit, or export one building");
   }
+  CreaseOptions crease;
+  crease.crease_rad = options.crease_deg * std::numbers::pi / 180;
+  crease.rounding_m = rounding_m(building);
   if (const std::optional<Eigen::Vector3d> up = leaning_up(building)) {
     report.levelled_deg = lean_rad(Eigen::Vector3d::Zero(), *up) * 180 / std::numbers::pi;
     building = levelled(std::move(building), *up);
@@ -172,8 +187,6 @@ ImportedWorld import_world(const Mesh& mesh,
   for (double& storey : report.storeys_m) storey += lift;
 
   constexpr double below_m = 0.01;  // the floor itself, and what stands on it
-  CreaseOptions crease;
-  crease.crease_rad = options.crease_deg * std::numbers::pi / 180;
   FeatureSet& features = imported.world.loose;
   const std::vector<Segment> edges = crease_edges(building, crease);
   report.edges = edges.size();

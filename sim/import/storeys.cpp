@@ -69,7 +69,12 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
   std::stable_sort(by_amount.begin(), by_amount.end(),
                    [](const Level& a, const Level& b) { return a.amount > b.amount; });
   const double plan = plan_area(faces);
-  std::vector<double> starts, heights;
+  std::vector<double> starts;
+  struct Storey {
+    double height;
+    bool has_floor;
+  };
+  std::vector<Storey> storeys;
   for (const Level& wall : by_amount) {
     if (wall.amount < least_walls * by_amount[0].amount) break;
     if (std::any_of(starts.begin(), starts.end(),
@@ -77,14 +82,22 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
       continue;
     }
     starts.push_back(wall.z());
-    double height = wall.z(), largest = least_floor * plan;
+    Storey storey{wall.z(), false};
+    double largest = least_floor * plan;
     for (const auto& [level, floor] : floors) {
       const double above = floor.z() - wall.z();
       if (above < -floor_below_m || above > floor_above_m || floor.amount < largest) continue;
       largest = floor.amount;
-      height = floor.z();
+      storey = {floor.z(), true};
     }
-    heights.push_back(height);
+    storeys.push_back(storey);
+  }
+  // Where a building has floors, walls that begin without one are gables and parapets.
+  const bool has_floors = std::any_of(storeys.begin(), storeys.end(),
+                                      [](const Storey& storey) { return storey.has_floor; });
+  std::vector<double> heights;
+  for (const Storey& storey : storeys) {
+    if (storey.has_floor || !has_floors) heights.push_back(storey.height);
   }
   std::sort(heights.begin(), heights.end());
   return heights;

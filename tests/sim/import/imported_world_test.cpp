@@ -70,6 +70,25 @@ TEST(Storeys, AreWhereWallsBegin) {
 }
 
 // The outer faces of a house go down to its footing; its rooms do not.
+// A gable stands on walls, not on a floor.
+TEST(Storeys, AreNotGables) {
+  Mesh mesh = test::house();
+  const auto add = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                       const Eigen::Vector3d& c) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (const double x : {-0.1, 8.2}) add({x, -0.1, 2.5}, {x, 3.1, 2.5}, {x, 1.5, 4.5});
+  add_rectangle(mesh, {-0.1, -0.1, 2.5}, {8.3, 0, 0}, {0, 1.6, 2});
+  add_rectangle(mesh, {-0.1, 3.1, 2.5}, {8.3, 0, 0}, {0, -1.6, 2});
+  for (double x = 0.5; x < 8; x += 0.5) add({x, -0.1, 2.5}, {x, 3.1, 2.5}, {x, 1.5, 4.5});
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(mesh, 5e-4))).size(), 1u);
+  // With a floor below it, it is an attic.
+  add_rectangle(mesh, {-0.1, -0.1, 2.5}, {8.3, 0, 0}, {0, 3.2, 0});
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(mesh, 5e-4))).size(), 2u);
+}
+
 TEST(Storeys, BeginWhereMostWallsDoAndNotAtThePlinth) {
   Mesh mesh;
   add_box(mesh, {0, 0, -1}, {10, 8, 2.7});
@@ -292,6 +311,34 @@ TEST(ImportedWorld, IsNotLevelledByARamp) {
   options.up_axis = 2;
   options.unit_m = 1;
   EXPECT_EQ(import_world(mesh, options, "m.obj").report.levelled_deg, 0);
+}
+
+// Property: a building that was turned and written in whole millimetres has the edges of the one
+// before, though rounding turns its short pieces by degrees; round things stay round.
+TEST(ImportedWorld, IsTheSameInWholeMillimetres) {
+  Mesh mesh = test::house();
+  for (int i = 0; i < 40; ++i) {  // pieces of walls, whose corners cut its edges into short pieces
+    add_rectangle(mesh, {0.2 * i, 0, 0}, {0.2, 0, 0}, {0, 0, 0.03 + 0.01 * (i % 3)});
+  }
+  mesh = turned_and_scaled(leaning(mesh, 33, {0, 0, 1}), 2, 1);
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const ImportedWorld exact = import_world(mesh, options, "m.obj");
+  for (Eigen::Vector3d& v : mesh.vertices) v = (v * 1000).array().round() / 1000;
+  const ImportedWorld rounded = import_world(mesh, options, "m.obj");
+  EXPECT_EQ(rounded.report.edges, exact.report.edges);
+  EXPECT_EQ(rounded.world.loose.segments_m.size(), exact.world.loose.segments_m.size());
+  // A bow of 1 m radius in pieces of 0.2 m.
+  Mesh bow = test::house();
+  for (int i = 0; i < 15; ++i) {
+    const auto at = [](int k) { return Eigen::Vector3d(std::sin(0.2 * k), std::cos(0.2 * k), 1); };
+    bow.lines.push_back({static_cast<std::uint32_t>(bow.vertices.size()),
+                         static_cast<std::uint32_t>(bow.vertices.size() + 1)});
+    for (const int k : {i, i + 1}) bow.vertices.push_back((at(k) * 1000).array().round() / 1000);
+  }
+  EXPECT_EQ(import_world(bow, options, "m.obj").report.edges,
+            import_world(test::house(), options, "m.obj").report.edges + 15);
 }
 
 // Vertices that jitter by a third of a millimetre leave no edge exactly upright.

@@ -182,6 +182,14 @@ void run(ImportArguments arguments, Session& session) {
                     "round things are; see --shortest-m",
                     arguments.file, report.shorter, report.edges, options.shortest_m));
   }
+  constexpr std::size_t least_shallow = 12;  // a column of as many sides
+  constexpr double above_shallow_deg = 36;
+  if (report.creases.shallow_uprights >= least_shallow && options.crease_deg < above_shallow_deg) {
+    session.warn(fmt::format(
+        "{}: {} upright edges are between faces that meet at less than 35 degrees, as those of "
+        "round columns; --crease-deg {:g} leaves them out",
+        arguments.file, report.creases.shallow_uprights, above_shallow_deg));
+  }
   const World without_route = build_world(description);
   constexpr double highest_storey_m = 5;
   if (report.storeys_m.empty() && !is_open) {

@@ -109,20 +109,35 @@ std::vector<Piece> pieces_of(const Mesh& mesh, double within) {
   return pieces;
 }
 
-/// Whether half-planes around a piece look like an edge.
-bool is_edge(std::vector<Piece>::const_iterator begin,
-             std::vector<Piece>::const_iterator end,
-             double crease_rad) {
+/// How the half-planes around a piece look.
+struct Crease {
+  bool is_edge = true;
+  double turn_rad = std::numbers::pi;  ///< from one plane to the other, if there are two
+};
+
+Crease crease_of(std::vector<Piece>::const_iterator begin,
+                 std::vector<Piece>::const_iterator end,
+                 double crease_rad) {
   constexpr double same_rad = 0.05;
   std::vector<Eigen::Vector3d> different;
   for (auto piece = begin; piece != end; ++piece) {
-    if (piece->into.isZero()) return true;
+    if (piece->into.isZero()) return {};
     const bool known = std::any_of(different.begin(), different.end(), [&](const auto& other) {
       return other.dot(piece->into) > std::cos(same_rad);
     });
     if (!known) different.push_back(piece->into);
   }
-  return different.size() != 2 || different[0].dot(different[1]) > -std::cos(crease_rad);
+  if (different.size() != 2) return {};
+  const double opposite = -different[0].dot(different[1]);
+  return {opposite < std::cos(crease_rad), std::acos(std::clamp(opposite, -1.0, 1.0))};
+}
+
+bool is_shallow_upright(const Mesh& mesh, const Piece& piece, const Crease& crease) {
+  constexpr double shallow_rad = 35 * std::numbers::pi / 180;  // 12 sides turn by 30 degrees
+  constexpr double least_m = 1, upright = 1e-3;
+  const Eigen::Vector3d d = mesh.vertices[piece.b] - mesh.vertices[piece.a];
+  return crease.is_edge && crease.turn_rad < shallow_rad && d.norm() >= least_m &&
+         d.head<2>().norm() < upright * d.norm();
 }
 
 /// Joins pieces that continue each other.
@@ -213,14 +228,20 @@ class Joiner {
 
 }  // namespace
 
-std::vector<Segment> crease_edges(const Mesh& mesh, const CreaseOptions& options) {
+std::vector<Segment> crease_edges(const Mesh& mesh,
+                                  const CreaseOptions& options,
+                                  CreaseRemarks* remarks) {
   const std::vector<Piece> pieces = pieces_of(mesh, options.within_m);
   std::vector<std::pair<Vertex, Vertex>> kept;
   for (auto begin = pieces.begin(); begin != pieces.end();) {
     const auto end = std::find_if(begin, pieces.end(), [&](const Piece& piece) {
       return piece.a != begin->a || piece.b != begin->b;
     });
-    if (is_edge(begin, end, options.crease_rad)) kept.emplace_back(begin->a, begin->b);
+    const Crease crease = crease_of(begin, end, options.crease_rad);
+    if (crease.is_edge) kept.emplace_back(begin->a, begin->b);
+    if (remarks != nullptr) {
+      remarks->shallow_uprights += is_shallow_upright(mesh, *begin, crease);
+    }
     begin = end;
   }
   return Joiner(mesh, std::move(kept), options).joined();

@@ -188,7 +188,7 @@ ImportedWorld import_world(const Mesh& mesh,
 
   constexpr double below_m = 0.01;  // the floor itself, and what stands on it
   FeatureSet& features = imported.world.loose;
-  const std::vector<Segment> edges = crease_edges(building, crease);
+  const std::vector<Segment> edges = crease_edges(building, crease, &report.creases);
   report.edges = edges.size();
   for (const Segment& edge : edges) {
     const auto [a, b] = between(edge, -below_m, top - floor);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/import/axes_and_unit.h"
+#include "sim/import/crease_edges.h"
 #include "sim/import/mesh.h"
 #include "sim/world.h"
 
@@ -34,6 +35,7 @@ struct ImportReport {
   std::size_t edges = 0;                               ///< that one would see, of all storeys
   std::size_t outside = 0;                             ///< of them above or below the storey
   std::size_t shorter = 0;                             ///< of them left out
+  CreaseRemarks creases;                               ///< of all storeys
   std::size_t made_upright = 0;                        ///< of those in the world
   double levelled_deg = 0;                             ///< by which the building leaned
 };

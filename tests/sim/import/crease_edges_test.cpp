@@ -100,6 +100,24 @@ TEST(CreaseEdges, AreThoseOfTheMovedMesh) {
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 1e-9);
 }
 
+// A column of 12 sides has an upright edge at each, of 30 degrees; one of 8 sides is meant so.
+TEST(CreaseEdges, OfRoundColumnsAreCounted) {
+  for (const int sides : {8, 12, 16, 24}) {
+    Mesh mesh;
+    for (int k = 0; k < sides; ++k) {
+      const auto at = [&](int i) {
+        const double angle = 2 * std::numbers::pi * i / sides;
+        return Eigen::Vector3d(0.4 * std::cos(angle), 0.4 * std::sin(angle), 0);
+      };
+      test::add_rectangle(mesh, at(k), at(k + 1) - at(k), {0, 0, 2.5});
+    }
+    CreaseRemarks remarks;
+    crease_edges(welded(mesh, 1e-4), {}, &remarks);
+    const bool is_shallow = sides == 12 || sides == 16;
+    EXPECT_EQ(remarks.shallow_uprights, is_shallow ? static_cast<std::size_t>(sides) : 0u) << sides;
+  }
+}
+
 TEST(CreaseEdges, KeepTheLinesOfAFile) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 1}};

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -73,14 +72,29 @@ struct Heights {
   }
 };
 
+/// Takes out what is most at a height: in a slice or, in folded heights, which have no ends, in two
+/// neighbours, lest rounding decides between them.
+template <std::size_t count>
+double take_commonest(std::array<double, count>& slices, bool is_folded) {
+  const auto next = [&](std::size_t i) { return (i + 1) % count; };
+  const auto amount = [&](std::size_t i) { return slices[i] + (is_folded ? slices[next(i)] : 0); };
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    if (amount(i) > amount(most)) most = i;
+  }
+  const double taken = amount(most);
+  slices[most] = 0;
+  if (is_folded) slices[next(most)] = 0;
+  return taken;
+}
+
 /// Share of what stands along an axis that begins at the commonest of 100 heights, times that of
 /// what ends at the commonest: walls stand on one floor and reach one ceiling.
 double alike(const std::vector<Upright>& uprights, const Heights& heights) {
   std::array<double, 101> begins{}, ends{};
   double all = 0;
   const auto at = [&](double height) {
-    const auto slice = static_cast<std::size_t>(std::lround(100 * heights.share(height)));
-    return heights.is_folded ? slice % 100 : slice;
+    return static_cast<std::size_t>(std::lround(100 * heights.share(height)));
   };
   for (const Upright& upright : uprights) {
     begins[at(upright.low)] += upright.amount;
@@ -88,8 +102,8 @@ double alike(const std::vector<Upright>& uprights, const Heights& heights) {
     all += upright.amount;
   }
   if (!(all > 0)) return 0;
-  return *std::max_element(begins.begin(), begins.end()) *
-         *std::max_element(ends.begin(), ends.end()) / (all * all);
+  return take_commonest(begins, heights.is_folded) * take_commonest(ends, heights.is_folded) /
+         (all * all);
 }
 
 /// Share of the surface (or of the lines, without any) that is level with respect to an axis and
@@ -98,11 +112,7 @@ double gathered(const Mesh& mesh, int axis, const Heights& heights) {
   std::array<double, 60> slices{};
   double all = 0;
   const auto add = [&](double at, double amount) {
-    // A folded floor lies in the middle of a slice, not between the last and the first.
-    const double slice = 60 * heights.share(at) + (heights.is_folded ? 0.5 : 0);
-    slices[heights.is_folded ? static_cast<std::size_t>(slice) % 60
-                             : std::min<std::size_t>(59, static_cast<std::size_t>(slice))] +=
-        amount;
+    slices[std::min<std::size_t>(59, static_cast<std::size_t>(60 * heights.share(at)))] += amount;
   };
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
@@ -119,8 +129,8 @@ double gathered(const Mesh& mesh, int axis, const Heights& heights) {
       if (std::abs(q[axis] - p[axis]) < 0.02 * length) add(p[axis], length);
     }
   }
-  std::partial_sort(slices.begin(), slices.begin() + 2, slices.end(), std::greater<>());
-  return all > 0 ? (slices[0] + slices[1]) / all : 0;
+  const double first = take_commonest(slices, heights.is_folded);
+  return all > 0 ? (first + take_commonest(slices, heights.is_folded)) / all : 0;
 }
 
 /// The axis of the largest value, if it is so many times the second.
@@ -197,17 +207,21 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   std::array<Heights, 3> whole, folded;
+  std::optional<int>
+      tower;  // an axis with more even storeys than rows of rooms have walls by chance
+  constexpr int many = 4;
   for (int axis = 0; axis < 3; ++axis) {
     whole[axis] = folded[axis] = {low[axis], size[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
     if (storeys) folded[axis] = {storeys->first, storeys->height, true};
+    if (storeys && storeys->count >= many) tower = axis;
   }
   std::optional<int> up = voted_axis(mesh, folded);
   if (!up) {
     std::array<double, 3> by_size{};
     for (int axis = 0; axis < 3; ++axis) by_size[axis] = 1 / std::max(folded[axis].size, 1e-300);
     up = voted_axis(mesh, whole);
-    if (up && clear_winner(by_size, 1.2) != up) up.reset();
+    if (up && (clear_winner(by_size, 1.2) != up || tower.value_or(*up) != *up)) up.reset();
   }
   if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",

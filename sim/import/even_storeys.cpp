@@ -19,57 +19,73 @@ constexpr double level_cosine = 0.98;
 constexpr double least_share = 0.33;  // of the plan's bounding box: a floor, also of an L
 constexpr double even = 0.02;         // of a storey
 constexpr double most_slender = 3;    // height by the narrower side of the plan
+constexpr double most_slender_of_many = 4.5;
+constexpr int many = 5;  // storeys
 constexpr std::size_t most_levels = 200;
 
-/// Level area by height, in slices.
-class LevelArea {
- public:
-  LevelArea(const Mesh& mesh, int axis) {
-    const auto [low, high] = extent_of(mesh);
-    low_ = low[axis];
-    slice_ = std::max(high[axis] - low[axis], 1e-300) / slices;
-    std::array<double, slices + 1> area{};
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-      const Eigen::Vector3d twice = (q - p).cross(r - p);
-      if (!(std::abs(twice[axis]) > level_cosine * twice.norm())) continue;
-      area[slice_at((p[axis] + q[axis] + r[axis]) / 3)] += 0.5 * std::abs(twice[axis]);
-    }
-    for (std::size_t i = 0; i < area.size(); ++i) sum_[i + 1] = sum_[i] + area[i];
-  }
-
-  /// Within a distance of a height.
-  double near(double height, double within) const {
-    if (height + within < low_ || height - within > low_ + slices * slice_) return 0;
-    return sum_[slice_at(height + within) + 1] - sum_[slice_at(height - within)];
-  }
-
-  /// Heights at which there is at least so much, one for each run of slices.
-  std::vector<double> levels(double least) const {
-    std::vector<double> found;
-    for (std::size_t i = 0; i <= slices; ++i) {
-      double area = 0, moment = 0;
-      for (; i <= slices && sum_[i + 1] > sum_[i]; ++i) {
-        const double here = sum_[i + 1] - sum_[i];
-        area += here;
-        moment += here * static_cast<double>(i);
-      }
-      if (area >= least) found.push_back(low_ + slice_ * moment / area);
-    }
-    return found;
-  }
-
-  double slice() const { return slice_; }
-
- private:
-  static constexpr std::size_t slices = 2000;
-  std::size_t slice_at(double height) const {
-    const double at = std::round((height - low_) / slice_);
-    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(slices)));
-  }
-  double low_ = 0, slice_ = 1;
-  std::array<double, slices + 2> sum_{};
+struct Level {
+  double height, area;
 };
+
+/// Heights at which so much surface is level, one for each run of slices that hold any, ascending.
+std::vector<Level> levels_of(const Mesh& mesh, int axis, double least_area) {
+  constexpr std::size_t slices = 2000;
+  const auto [low, high] = extent_of(mesh);
+  const double slice = std::max(high[axis] - low[axis], 1e-300) / slices;
+  std::array<double, slices + 1> area{}, moment{};
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const Eigen::Vector3d twice = (q - p).cross(r - p);
+    if (!(std::abs(twice[axis]) > level_cosine * twice.norm())) continue;
+    const double height = (p[axis] + q[axis] + r[axis]) / 3;
+    const double at = std::clamp((height - low[axis]) / slice, 0.0, static_cast<double>(slices));
+    area[static_cast<std::size_t>(at)] += 0.5 * std::abs(twice[axis]);
+    moment[static_cast<std::size_t>(at)] += 0.5 * std::abs(twice[axis]) * height;
+  }
+  std::vector<Level> levels;
+  for (std::size_t i = 0; i <= slices; ++i) {
+    double all = 0, sum = 0;
+    for (; i <= slices && area[i] > 0; ++i) {
+      all += area[i];
+      sum += moment[i];
+    }
+    if (all >= least_area && all > 0) levels.push_back({sum / all, all});
+  }
+  return levels;
+}
+
+/// The level nearest to a height, if it lies within a distance.
+const Level* level_near(const std::vector<Level>& levels, double height, double within) {
+  const Level* nearest = nullptr;
+  for (const Level& level : levels) {
+    if (std::abs(level.height - height) > within) continue;
+    if (nearest == nullptr ||
+        std::abs(level.height - height) < std::abs(nearest->height - height)) {
+      nearest = &level;
+    }
+  }
+  return nearest;
+}
+
+/// Levels at even heights, from the lowest of them on.
+struct Row {
+  double first, storey, last;
+  int floors;
+  double area;
+};
+
+/// The row that begins with two levels; its storey is the mean of those found so far.
+Row row_from(const std::vector<Level>& levels, const Level& first, const Level& second) {
+  Row row{first.height, second.height - first.height, second.height, 2, first.area + second.area};
+  for (;;) {
+    const Level* next = level_near(levels, row.last + row.storey, even * row.storey);
+    if (next == nullptr) return row;
+    row.area += next->area;
+    row.last = next->height;
+    row.storey = (row.last - row.first) / row.floors;
+    ++row.floors;
+  }
+}
 
 }  // namespace
 
@@ -78,33 +94,29 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   const double one = size[(axis + 1) % 3], other = size[(axis + 2) % 3];
-  if (!(size[axis] > 0) || size[axis] > most_slender * std::min(one, other)) return {};
-  const LevelArea area(mesh, axis);
-  const double least = least_share * one * other;
-  const std::vector<double> levels = area.levels(least);
+  if (!(size[axis] > 0)) return {};
+  const double slender = size[axis] / std::min(one, other);
+  const std::vector<Level> levels = levels_of(mesh, axis, least_share * one * other);
   if (levels.size() > most_levels) return {};
   std::optional<EvenStoreys> best;
   double most = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     for (std::size_t k = i + 1; k < levels.size(); ++k) {
-      const double storey = levels[k] - levels[i], within = std::max(area.slice(), even * storey);
-      if (area.near(levels[i] - storey, within) >= least) continue;  // begins lower
-      int floors = 1;
-      double all = area.near(levels[i], within);
-      for (; area.near(levels[i] + floors * storey, within) >= least; ++floors) {
-        all += area.near(levels[i] + floors * storey, within);
-      }
+      const double storey = levels[k].height - levels[i].height;
+      if (level_near(levels, levels[i].height - storey, even * storey) != nullptr) continue;
+      const Row row = row_from(levels, levels[i], levels[k]);
       // Below the first may lie a cellar or a higher ground floor, and above the last a storey and
-      // a roof. Two levels alone make a row anywhere: the upper storey must be as high.
-      const double below = levels[i] - low[axis];
-      const double above = high[axis] - (levels[i] + (floors - 1) * storey);
-      const bool is_row =
-          floors > 2 ? below < 2 * storey && above < 2 * storey
-                     : below < 0.4 * storey && above > 0.85 * storey && above < 1.4 * storey;
-      const int count = floors - (above < 0.6 * storey ? 1 : 0);
-      if (!is_row || count < 2 || all <= most) continue;
-      most = all;
-      best = EvenStoreys{levels[i], storey, count};
+      // a roof, which is higher where the house is wide. Two levels alone make a row anywhere: the
+      // upper storey must be as high.
+      const double below = (row.first - low[axis]) / row.storey;
+      const double above = (high[axis] - row.last) / row.storey;
+      const bool is_row = row.floors > 2 ? below < 2 && above < (row.floors > 3 ? 3.5 : 2)
+                                         : below < 0.4 && above > 0.85 && above < 1.4;
+      const int count = row.floors - (above < 0.6 ? 1 : 0);
+      const bool is_slender = slender > (count < many ? most_slender : most_slender_of_many);
+      if (!is_row || count < 2 || is_slender || row.area <= most) continue;
+      most = row.area;
+      best = EvenStoreys{row.first, row.storey, count};
     }
   }
   return best;

@@ -116,6 +116,34 @@ class World(verb_calls.ProgramCase):
         self.assertIn('no building in m, cm, mm, in or ft', self.refused('import', 'tiny.ply', '-o', 'x'))
         self.assertFalse((self.folder / 'x').exists())
 
+    def test_a_list_with_y_up_is_doubted(self):
+        room = ('0 0 0 6 0 0\n6 0 0 6 0 4\n6 0 4 0 0 4\n0 0 4 0 0 0\n0 2.5 0 6 2.5 0\n6 2.5 0 6 2.5 4\n'
+                '6 2.5 4 0 2.5 4\n0 2.5 4 0 2.5 0\n0 0 0 0 2.5 0\n6 0 0 6 2.5 0\n6 0 4 6 2.5 4\n0 0 4 0 2.5 4\n')
+        (self.folder / 'y.txt').write_text(room)
+        run = self.run_program('import', 'y.txt', '-o', 'y.world.toml')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('by its shape y is; see --up', run.stderr)
+        self.assertIn('z is up (as in all lists)', run.stdout)
+        told = self.run_program('import', 'y.txt', '-o', 'y.world.toml', '--up', 'y')
+        self.assertNotIn('by its shape', told.stderr)
+
+    def test_tracks_without_a_unit_are_said_to_have_none(self):
+        room = [('0 0 0', '8 0 0'), ('8 0 0', '8 6 0'), ('8 6 0', '0 6 0'), ('0 6 0', '0 0 0'),
+                ('0 0 2.6', '8 0 2.6'), ('8 0 2.6', '8 6 2.6'), ('8 6 2.6', '0 6 2.6'),
+                ('0 6 2.6', '0 0 2.6'), ('0 0 0', '0 0 2.6'), ('8 0 0', '8 0 2.6'),
+                ('8 6 0', '8 6 2.6'), ('0 6 0', '0 6 2.6')]
+        tracks = ''.join(f'{i} 2 2\n{a}\n{b}\n1 2\n0 0\n' for i, (a, b) in enumerate(room))
+        (self.folder / 'tracks.txt').write_text(f'{len(room)}\n{tracks}')
+        run = self.run_program('import', 'tracks.txt', '-o', 't.world.toml')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('images give no unit of length; 1 m was taken', run.stderr)
+        self.assertNotIn('(given)', run.stdout)
+        told = self.run_program('import', 'tracks.txt', '-o', 't.world.toml', '--unit', '1.5')
+        self.assertNotIn('no unit of length', told.stderr)
+
+    def test_what_is_no_world_is_to_be_imported(self):
+        self.assertIn('import it first', self.refused('info', 'room.ply'))
+
     def test_lines_alone_are_said_to_hide_nothing(self):
         (self.folder / 'a.lines.txt').write_text(
             '0 0 0 6 0 0\n6 0 0 6 4 0\n6 4 0 0 4 0\n0 4 0 0 0 0\n0 0 0 0 0 2.5\n6 4 0 6 4 2.5\n')

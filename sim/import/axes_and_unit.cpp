@@ -234,19 +234,21 @@ const Unit& unit_by_look(const Mesh& mesh, int up, const std::string& place) {
   const Eigen::Vector3d size = high - low;
   const double height = size[up], length = std::max(size[(up + 1) % 3], size[(up + 2) % 3]);
   const std::optional<EvenStoreys> storeys = even_storeys(mesh, up);
-  // Two storeys are found by chance too: a unit other than a metre is doubted by them.
-  const bool is_sure = storeys && storeys->count > 2;
+  const auto is_storey = [&](double unit_m) {
+    const double high_m = storeys ? unit_m * storeys->height : 0;
+    return high_m >= lowest_storey_m && high_m <= highest_storey_m;
+  };
+  // Two storeys are found by chance too: but for metres, what the whole height allows counts
+  // beside.
+  const bool is_sure = storeys && (storeys->count > 2 || is_storey(1));
   for (const bool by_storeys : {true, false}) {
     if (by_storeys && !storeys) continue;
     std::vector<const Unit*> fit;
     std::string sizes;
     for (const Unit& unit : units) {
       const double whole_m = unit.metres * height, length_m = unit.metres * length;
-      const double storey_m = unit.metres * (by_storeys ? storeys->height : 0);
       const bool by_whole = whole_m >= unit.lowest_m && whole_m <= unit.highest_m;
-      const bool by_storey = storey_m >= lowest_storey_m && storey_m <= highest_storey_m;
-      const bool is_high =
-          by_storeys ? by_storey || (!is_sure && unit.metres == 1 && by_whole) : by_whole;
+      const bool is_high = by_storeys ? is_storey(unit.metres) || (!is_sure && by_whole) : by_whole;
       if (!is_high || length_m < shortest_m || length_m > longest_m) continue;
       fit.push_back(&unit);
       sizes += fmt::format("{}{} ({:.3g} m long, {:.3g} m high)", sizes.empty() ? "" : " or ",

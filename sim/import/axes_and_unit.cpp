@@ -199,8 +199,8 @@ std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& he
 }
 
 /// Up by the signs of one storey: a building of several is folded into one first. Where folding
-/// makes them unclear, as by walls at even distances, the whole building speaks, if what it says is
-/// up is the lowest way to see the building.
+/// makes them unclear, as by walls at even distances, or finds but two storeys against what the
+/// whole building says, that speaks, if its way to see the building is the lowest.
 int up_axis_by_look(const Mesh& file, const std::string& place) {
   const Mesh mesh = with_joined_faces(file);
   if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
@@ -209,19 +209,25 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   std::array<Heights, 3> whole, folded;
   std::optional<int>
       tower;  // an axis with more even storeys than rows of rooms have walls by chance
+  std::array<bool, 3> pairs{};  // two storeys only, which is found by chance too
   constexpr int many = 4;
   for (int axis = 0; axis < 3; ++axis) {
     whole[axis] = folded[axis] = {low[axis], size[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
     if (storeys) folded[axis] = {storeys->first, storeys->height, true};
     if (storeys && storeys->count >= many) tower = axis;
+    pairs[axis] = storeys && storeys->count == 2;
   }
   std::optional<int> up = voted_axis(mesh, folded);
-  if (!up) {
+  const bool is_chance = up && pairs[*up];
+  if (!up || is_chance) {
     std::array<double, 3> by_size{};
     for (int axis = 0; axis < 3; ++axis) by_size[axis] = 1 / std::max(folded[axis].size, 1e-300);
-    up = voted_axis(mesh, whole);
-    if (up && (clear_winner(by_size, 1.2) != up || tower.value_or(*up) != *up)) up.reset();
+    const std::optional<int> by_whole = voted_axis(mesh, whole);
+    const bool is_lowest = by_whole && clear_winner(by_size, 1.2) == by_whole;
+    if (!is_chance || (by_whole && by_whole != up)) {
+      up = is_lowest && tower.value_or(*by_whole) == *by_whole ? by_whole : std::nullopt;
+    }
   }
   if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",

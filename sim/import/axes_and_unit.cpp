@@ -17,6 +17,7 @@
 #include "sim/import/convex_faces.h"
 #include "sim/import/even_storeys.h"
 #include "sim/import/mesh.h"
+#include "sim/import/storeys.h"
 
 namespace vernier::sim::internal {
 
@@ -33,8 +34,8 @@ struct Unit {
 constexpr std::array units{Unit{1, "m", 1.8, 60}, Unit{0.01, "cm", 2.2, 22},
                            Unit{0.001, "mm", 2.2, 60}, Unit{0.0254, "in", 2.2, 22},
                            Unit{0.3048, "ft", 2.2, 22}};
-constexpr double lowest_storey_m = 2.2, highest_storey_m = 6;  // of several, from floor to floor
-constexpr double shortest_m = 3, longest_m = 500;              // the longer side of the plan
+constexpr double highest_storey_m = 6;                       // of several, from floor to floor
+constexpr double shortest_plan_m = 3, longest_plan_m = 500;  // the longer side of the plan
 
 /// What stands along an axis: its lower and upper end, and how much of it there is.
 struct Upright {
@@ -255,7 +256,7 @@ const Unit& unit_by_look(const Mesh& mesh, int up, const std::string& place) {
       const double whole_m = unit.metres * height, length_m = unit.metres * length;
       const bool by_whole = whole_m >= unit.lowest_m && whole_m <= unit.highest_m;
       const bool is_high = by_storeys ? is_storey(unit.metres) || (!is_sure && by_whole) : by_whole;
-      if (!is_high || length_m < shortest_m || length_m > longest_m) continue;
+      if (!is_high || length_m < shortest_plan_m || length_m > longest_plan_m) continue;
       fit.push_back(&unit);
       sizes += fmt::format("{}{} ({:.3g} m long, {:.3g} m high)", sizes.empty() ? "" : " or ",
                            unit.name, length_m, whole_m);

@@ -15,10 +15,10 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double level_cosine = 0.98;
-constexpr double least_share = 0.33;  // of the plan's bounding box: a floor, also of an L
-constexpr double even = 0.02;         // of a storey
-constexpr double most_slender = 3;    // height by the narrower side of the plan
+constexpr double floor_cosine = 0.98;
+constexpr double least_of_plan = 0.33;  // of the plan's bounding box: a floor, also of an L
+constexpr double even = 0.02;           // of a storey
+constexpr double most_slender = 3;      // height by the narrower side of the plan
 constexpr double most_slender_of_many = 4.5;
 constexpr int many = 5;  // storeys
 constexpr std::size_t most_levels = 200;
@@ -36,7 +36,7 @@ std::vector<Level> levels_of(const Mesh& mesh, int axis, double least_area) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
     const Eigen::Vector3d twice = (q - p).cross(r - p);
-    if (!(std::abs(twice[axis]) > level_cosine * twice.norm())) continue;
+    if (!(std::abs(twice[axis]) > floor_cosine * twice.norm())) continue;
     const double height = (p[axis] + q[axis] + r[axis]) / 3;
     const double at = std::clamp((height - low[axis]) / slice, 0.0, static_cast<double>(slices));
     area[static_cast<std::size_t>(at)] += 0.5 * std::abs(twice[axis]);
@@ -68,15 +68,16 @@ const Level* level_near(const std::vector<Level>& levels, double height, double 
 }
 
 /// Levels at even heights, from the lowest of them on.
-struct Row {
+struct StoreyRow {
   double first, storey, last;
   int floors;
   double area;
 };
 
 /// The row that begins with two levels; its storey is the mean of those found so far.
-Row row_from(const std::vector<Level>& levels, const Level& first, const Level& second) {
-  Row row{first.height, second.height - first.height, second.height, 2, first.area + second.area};
+StoreyRow row_from(const std::vector<Level>& levels, const Level& first, const Level& second) {
+  StoreyRow row{first.height, second.height - first.height, second.height, 2,
+                first.area + second.area};
   for (;;) {
     const Level* next = level_near(levels, row.last + row.storey, even * row.storey);
     if (next == nullptr) return row;
@@ -96,7 +97,7 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
   const double one = size[(axis + 1) % 3], other = size[(axis + 2) % 3];
   if (!(size[axis] > 0)) return {};
   const double slender = size[axis] / std::min(one, other);
-  const std::vector<Level> levels = levels_of(mesh, axis, least_share * one * other);
+  const std::vector<Level> levels = levels_of(mesh, axis, least_of_plan * one * other);
   if (levels.size() > most_levels) return {};
   std::optional<EvenStoreys> best;
   double most = 0;
@@ -104,7 +105,7 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
     for (std::size_t k = i + 1; k < levels.size(); ++k) {
       const double storey = levels[k].height - levels[i].height;
       if (level_near(levels, levels[i].height - storey, even * storey) != nullptr) continue;
-      const Row row = row_from(levels, levels[i], levels[k]);
+      const StoreyRow row = row_from(levels, levels[i], levels[k]);
       // Below the first may lie a cellar or a higher ground floor, and above the last a storey and
       // a roof, which is higher where the house is wide. Two levels alone make a row anywhere: the
       // upper storey must be as high.

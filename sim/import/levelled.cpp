@@ -20,7 +20,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double least_rad = 0.02 * degree;  // 7 mm in 20 m
 constexpr double most_rad = 5 * degree;
-constexpr double least_share = 0.5;
+constexpr double least_level_share = 0.5;
 
 /// Unit normals, upwards if they are roughly so, with areas.
 struct Faces {
@@ -81,16 +81,16 @@ std::optional<Vector3d> leaning_up(const Mesh& mesh) {
   const Faces faces = faces_of(mesh);
   const Vector3d z = Vector3d::UnitZ();
   if (faces.level.empty() || faces.walls.empty()) return {};
-  if (level_share(faces, z, least_rad) >= least_share) return {};
+  if (level_share(faces, z, least_rad) >= least_level_share) return {};
   const Vector3d up = commonest_level(faces);
   const double lean = std::asin(std::min(1.0, up.cross(z).norm()));
   if (!(lean >= least_rad && lean <= most_rad)) return {};
   const double within = std::min(0.25 * degree, lean / 4);
-  if (level_share(faces, up, within) < least_share) return {};
+  if (level_share(faces, up, within) < least_level_share) return {};
   // Walls along the axis of the lean stand upright to both; the others must lean too.
   const double walls = wall_share(faces, up, within);
   constexpr double clearly = 1.02;
-  if (walls < least_share || walls < clearly * wall_share(faces, z, within)) return {};
+  if (walls < least_level_share || walls < clearly * wall_share(faces, z, within)) return {};
   return up;
 }
 

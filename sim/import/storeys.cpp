@@ -15,7 +15,7 @@ namespace vernier::sim::internal {
 namespace {
 
 constexpr double level_m = 0.05;  // heights are told apart to this
-constexpr double lowest_storey_m = 2.2, lowest_wall_m = 1.5;
+constexpr double lowest_wall_m = 1.5;
 constexpr double least_walls = 0.2;  // length at their lower ends, of that of the storey with most
 constexpr double least_floor = 0.1;  // level surface that faces up, of the plan's bounding box
 constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin

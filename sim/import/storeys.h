@@ -8,6 +8,8 @@
 
 namespace vernier::sim::internal {
 
+inline constexpr double lowest_storey_m = 2.2;  ///< from floor to floor
+
 /// Heights of the floors of a building by its joined faces (convex_faces), in metres, z up,
 /// ascending: where many walls (upright surfaces of at least 1.5 m) begin, at least 2.2 m above
 /// each other; that of the largest level surface that faces up, lies up to 0.1 m below or 0.4 m

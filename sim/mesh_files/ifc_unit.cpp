@@ -19,13 +19,13 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view ifc_blanks = " \t\r\n";
 
 /// Without blanks around it.
 std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(blanks);
+  const std::size_t begin = text.find_first_not_of(ifc_blanks);
   if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+  return text.substr(begin, text.find_last_not_of(ifc_blanks) + 1 - begin);
 }
 
 /// A statement without the comments before it.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -50,27 +51,31 @@ std::optional<PlaceEvidence> LineLocaliser::evidence_without(int left_out,
   return place_evidence(view, lines, best, compose(of_node, best), fine_agreement());
 }
 
-/// The nodes whose views are taken for views of the place of a pose, nearest first.
-std::vector<int> LineLocaliser::nodes_of_place(const Pose2D& pose) const {
+/// The nodes whose views are taken for looks from the place of a pose of the first look.
+std::set<int> LineLocaliser::nodes_of_place(const Pose2D& pose, const Query& query) const {
   constexpr double near_m = 1, near_rad = 0.6;  // success, and half of what a camera sees
-  constexpr std::size_t most = 8;               // more say little more: they are not independent
-  std::vector<int> nodes = grid_.near(pose, near_m, near_rad);
-  std::stable_sort(nodes.begin(), nodes.end(), [&](int i, int j) {
-    return distance_m(map_.nodes[i].pose, pose) < distance_m(map_.nodes[j].pose, pose);
-  });
-  if (nodes.size() > most) nodes.resize(most);
-  return nodes;
+  constexpr std::size_t most = 8;  // of a look: more say little more, for they are not independent
+  std::set<int> of_all;
+  for (const Seen& look : query.looks) {
+    std::vector<int> nodes = grid_.near(turned(pose, look.turn_rad), near_m, near_rad);
+    std::stable_sort(nodes.begin(), nodes.end(), [&](int i, int j) {
+      return distance_m(map_.nodes[i].pose, pose) < distance_m(map_.nodes[j].pose, pose);
+    });
+    if (nodes.size() > most) nodes.resize(most);
+    of_all.insert(nodes.begin(), nodes.end());
+  }
+  return of_all;
 }
 
-/// What tells a from b in the views that the map recorded near them: each is compared with the
-/// other recordings of its own place and, at the same pose beside the other place, with those
-/// there, without the nearest one.
+/// What tells a from b in the views that the map recorded near them in the directions of the looks:
+/// each is compared with the other recordings of its own place and, at the same pose beside the
+/// other place, with those there, without the nearest one.
 RecordedDifference LineLocaliser::recorded_difference(const Pose2D& a,
                                                       const Pose2D& b,
                                                       Query& query) const {
   RecordedDifference sum;
   for (const auto& [here, there] : {std::pair{a, b}, std::pair{b, a}}) {
-    for (const int node : nodes_of_place(here)) {
+    for (const int node : nodes_of_place(here, query)) {
       const Pose2D& own = map_.nodes[node].pose;
       const Pose2D other = compose(there, relative(own, here));
       const ComparedView view = compared_view(map_.nodes[node].view);

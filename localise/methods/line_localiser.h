@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -76,7 +77,7 @@ class LineLocaliser : public Localiser {
                                                 const ComparedView& view,
                                                 const Pose2D& pose,
                                                 Query& query) const;
-  std::vector<int> nodes_of_place(const Pose2D& pose) const;
+  std::set<int> nodes_of_place(const Pose2D& pose, const Query& query) const;
   RecordedDifference recorded_difference(const Pose2D& a, const Pose2D& b, Query& query) const;
   Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;

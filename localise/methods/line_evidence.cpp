@@ -67,31 +67,29 @@ std::set<int> LineLocaliser::nodes_of_place(const Pose2D& pose, const Query& que
   return of_all;
 }
 
-/// What tells a from b in the views that the map recorded near them in the directions of the looks:
-/// each is compared with the other recordings of its own place and, at the same pose beside the
-/// other place, with those there, without the nearest one.
-RecordedDifference LineLocaliser::recorded_difference(const Pose2D& a,
-                                                      const Pose2D& b,
+/// What tells one place from another in the views that the map recorded near it in the directions
+/// of the looks: each is compared with the other recordings there and, at the same pose beside the
+/// other place, with those of that, without the nearest one.
+RecordedDifference LineLocaliser::recorded_difference(const Pose2D& here,
+                                                      const Pose2D& there,
                                                       Query& query) const {
   RecordedDifference sum;
-  for (const auto& [here, there] : {std::pair{a, b}, std::pair{b, a}}) {
-    for (const int node : nodes_of_place(here, query)) {
-      const Pose2D& own = map_.nodes[node].pose;
-      const Pose2D other = compose(there, relative(own, here));
-      const ComparedView view = compared_view(map_.nodes[node].view);
-      auto known = query.recorded.find(node);
-      if (known == query.recorded.end()) {
-        known = query.recorded.emplace(node, evidence_without(node, view, own, query)).first;
-      }
-      std::optional<PlaceEvidence>& at_own = known->second;
-      auto at_other = evidence_without(grid_.nearest(other), view, other, query);
-      if (!at_own || !at_other) continue;
-      const PlaceDifference difference =
-          difference_between(view, *at_own, *at_other, fine_agreement());
-      sum.nats += difference.by_two_recordings;
-      sum.variance += difference.variance;
-      ++sum.views;
+  for (const int node : nodes_of_place(here, query)) {
+    const Pose2D& own = map_.nodes[node].pose;
+    const Pose2D other = compose(there, relative(own, here));
+    const ComparedView view = compared_view(map_.nodes[node].view);
+    auto known = query.recorded.find(node);
+    if (known == query.recorded.end()) {
+      known = query.recorded.emplace(node, evidence_without(node, view, own, query)).first;
     }
+    std::optional<PlaceEvidence>& at_own = known->second;
+    auto at_other = evidence_without(grid_.nearest(other), view, other, query);
+    if (!at_own || !at_other) continue;
+    const PlaceDifference difference =
+        difference_between(view, *at_own, *at_other, fine_agreement());
+    sum.nats += difference.by_two_recordings;
+    sum.variance += difference.variance;
+    ++sum.views;
   }
   return sum;
 }
@@ -111,7 +109,9 @@ Evidence LineLocaliser::evidence(const Hypothesis& a, const Hypothesis& b, Query
     sum.doubtful += difference.by_two_recordings;
     sum.variance += difference.variance;
   }
-  sum.repeated = probability_equal(options_.repeats, recorded_difference(a.pose, b.pose, query));
+  const RecordedDifference recorded = of_both(recorded_difference(a.pose, b.pose, query),
+                                              recorded_difference(b.pose, a.pose, query));
+  sum.repeated = probability_equal(options_.repeats, recorded);
   return at_b.from[a.pose] = sum;
 }
 

@@ -78,7 +78,9 @@ class LineLocaliser : public Localiser {
                                                 const Pose2D& pose,
                                                 Query& query) const;
   std::set<int> nodes_of_place(const Pose2D& pose, const Query& query) const;
-  RecordedDifference recorded_difference(const Pose2D& a, const Pose2D& b, Query& query) const;
+  RecordedDifference recorded_difference(const Pose2D& here,
+                                         const Pose2D& there,
+                                         Query& query) const;
   Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;

@@ -47,28 +47,40 @@ std::vector<double> weights_of(std::span<const WeightedMode> modes,
   return weights;
 }
 
-}  // namespace
-
-namespace {
-
-/// Density of a difference of scores, per nat, where places are equal.
-double density_if_equal(double nats, double variance) {
-  return std::exp(-0.5 * nats * nats / variance) / std::sqrt(2 * std::numbers::pi * variance);
+/// Logarithm of the density of a difference of scores, per nat, where places are equal.
+double log_density_if_equal(double nats, double variance) {
+  return -0.5 * nats * nats / variance - 0.5 * std::log(2 * std::numbers::pi * variance);
 }
 
 }  // namespace
 
+RecordedDifference of_both(const RecordedDifference& a, const RecordedDifference& b) {
+  RecordedDifference sum;
+  const int fewer = std::min(a.views, b.views);
+  if (fewer == 0) return sum;
+  for (const RecordedDifference* of : {&a, &b}) {
+    const double share = static_cast<double>(fewer) / of->views;
+    sum.nats += share * of->nats;
+    sum.variance += share * of->variance;
+    sum.views += fewer;
+  }
+  return sum;
+}
+
 double probability_equal(double before,
                          const RecordedDifference& recorded,
                          const PosteriorOptions& options) {
-  if (!(recorded.variance > 0)) return before;
   const double views = recorded.views;
+  if (!(before > 0 && recorded.variance >= views * options.least_recorded && views > 0)) {
+    return before;
+  }
   const double variance =
       options.dependence * (1 + (views - 1) * options.of_one_place) * recorded.variance;
-  const double equal = density_if_equal(recorded.nats, variance);
-  const double differ = options.differing_per_nat / views *
-                        std::exp(options.evidence_share * std::min(recorded.nats, 0.0));
-  return before * equal / (before * equal + (1 - before) * differ);
+  const double log_equal = log_density_if_equal(recorded.nats, variance);
+  const double log_differ = std::log(options.differing_per_nat / views) +
+                            options.evidence_share * std::min(recorded.nats, 0.0);
+  const double log_odds = std::log(before / (1 - before)) + log_equal - log_differ;
+  return 1 / (1 + std::exp(-log_odds));
 }
 
 double weight_against(const Evidence& evidence, double share, const PosteriorOptions& options) {
@@ -76,7 +88,7 @@ double weight_against(const Evidence& evidence, double share, const PosteriorOpt
   const double variance = options.dependence * evidence.variance;
   if (!(variance > 0)) return certain;
   const double d = evidence.doubtful;
-  const double equal = evidence.repeated * density_if_equal(d, variance);
+  const double equal = evidence.repeated * std::exp(log_density_if_equal(d, variance));
   const double differ = (1 - evidence.repeated) * options.differing_per_nat;
   return certain * (equal + differ * std::exp(-share * std::max(d, 0.0))) /
          (equal + differ * std::exp(share * std::min(d, 0.0)));

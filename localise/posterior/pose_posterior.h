@@ -28,12 +28,16 @@ struct Evidence {
   double repeated = 0;  ///< probability that they are, by the map alone
 };
 
-/// What tells two places apart in the views that a map recorded at them: the sum of doubtful
-/// differences in favour of where each was taken, nats.
+/// What tells places apart in views that a map recorded: the sum of their doubtful differences,
+/// each in favour of where the view was taken.
 struct RecordedDifference {
   double nats = 0, variance = 0;  ///< variance: of one that is 0 on average, views independent
   int views = 0;
 };
+
+/// What the views of two places say together, as if both had as many as the one that has fewer: a
+/// place that was recorded more often explains every view better. Nothing if one has no views.
+RecordedDifference of_both(const RecordedDifference& a, const RecordedDifference& b);
 using EvidenceBetween = std::function<Evidence(const Hypothesis&, const Hypothesis&)>;
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,
@@ -68,6 +72,8 @@ struct PosteriorOptions {
   /// Correlation of the differences of two views of one place, which are compared with the same
   /// recordings of the other.
   double of_one_place = 0.15;
+  /// Recorded views that have less to compare, nats² a view, say nothing: a line or two.
+  double least_recorded = 4;
   /// Prior probability that the view was taken where the map holds nothing. Its odds grow by
   ///
   ///     exp(off_gain + off_steepness (q - off_misfit) √(observations / usual_observations)),

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -88,7 +89,7 @@ TEST(ProbabilityEqual, IsThePosterior) {
   int decided = 0;
   for (int i = 0; i < draws; ++i) {
     const bool equal = d.uniform() < before;
-    RecordedDifference recorded{0, views * std::pow(d.uniform(1, 6), 2), views};
+    RecordedDifference recorded{0, views * std::pow(d.uniform(2, 8), 2), views};
     if (equal) {
       const double of_one = std::sqrt(options.dependence * recorded.variance / views);
       const double common = std::sqrt(options.of_one_place) * d.normal();
@@ -109,6 +110,10 @@ TEST(ProbabilityEqual, IsThePosterior) {
   EXPECT_LT(std::abs(excess), false_alarm_z * std::sqrt(variance));
   EXPECT_GT(decided, draws / 2);
   EXPECT_EQ(probability_equal(before, {}), before);
+  EXPECT_EQ(probability_equal(before, {0, 1, 1}), before);  // next to nothing to compare
+  EXPECT_EQ(probability_equal(0, {0, 1000, 6}), 0);
+  EXPECT_LT(probability_equal(before, {5000, 100, 6}), 1e-12);  // densities below all numbers
+  EXPECT_LT(probability_equal(before, {-5000, 100, 6}), 1e-12);
 }
 
 /// A recording of a room: each line is lost with 12 %, and has moved by 1.5 to 4.5 px in the image.
@@ -186,29 +191,36 @@ TEST(PlaceEvidence, EqualPlacesStayOpen) {
       << by_scores.wrong << " of " << by_scores.all;
 }
 
-/// Two rooms, 50 m apart, each recorded four times on the way into it.
-TopologicalMap two_rooms(const std::vector<PlaceLine>& one,
-                         const std::vector<PlaceLine>& other,
-                         std::uint32_t trial) {
-  TopologicalMap map;
-  for (const auto& [room, x_m] : {std::pair{&one, 0.0}, std::pair{&other, 50.0}}) {
-    for (const double forward_m : {0.0, 0.25, 0.5, 0.75}) {
-      const PlaceView seen = camera_view(*room, {forward_m, 0, 0});
-      map.nodes.push_back({{x_m + forward_m, 0, 0},
-                           test::view_of(recorded(seen.lines, 10 + map.nodes.size(), trial))});
-    }
+/// A room at `x_m`, recorded so many times along 0.75 m in the direction of `heading_rad`.
+void record(const std::vector<PlaceLine>& room,
+            double x_m,
+            double heading_rad,
+            int times,
+            std::uint32_t trial,
+            TopologicalMap& map) {
+  for (int i = 0; i < times; ++i) {
+    const double forward_m = times > 1 ? 0.75 * i / (times - 1) : 0;
+    const PlaceView seen = camera_view(room, {forward_m, 0, 0});
+    const Pose2D pose{x_m + forward_m * std::cos(heading_rad), 0, heading_rad};
+    map.nodes.push_back({pose, test::view_of(recorded(seen.lines, 10 + map.nodes.size(), trial))});
   }
-  return map;
 }
 
+/// How often each of two rooms, 50 m apart, was recorded.
+struct Recordings {
+  int first = 4, second = 4;
+};
+
 /// Answers about the first of two rooms at a stated error of 10 %.
-Answers answers(bool rooms_are_equal, double repeats, int buildings) {
+Answers answers(bool rooms_are_equal, double repeats, int buildings, Recordings times = {}) {
   Answers sum;
   for (int i = 0; i < buildings; ++i) {
     const auto room = test::random_room(7000 + i, 150);
     const auto other = rooms_are_equal ? room : test::random_room(9000 + i, 150);
     const auto trial = static_cast<std::uint32_t>(i);
-    const TopologicalMap map = two_rooms(room, other, trial);
+    TopologicalMap map;
+    record(room, 0, 0, times.first, trial, map);
+    record(other, 50, 0, times.second, trial, map);
     LocaliserOptions options;
     options.max_error_rate = 0.1;
     options.repeats = repeats;
@@ -238,6 +250,48 @@ TEST(RecordedViews, TellWhetherPlacesAreEqual) {
   const Answers differ = answers(false, repeats, buildings);
   EXPECT_GE(differ.all, answers(false, 0, buildings).all - 1);
   EXPECT_GT(differ.all, buildings * 9 / 10);
+}
+
+// A place that was recorded more often explains all views better, and is no other place for that.
+// Where the true one is recorded twice and its equal eight times, scores alone are always wrong.
+TEST(RecordedViews, OfUnequalNumberSayNoMoreForThat) {
+  constexpr int buildings = 60;
+  constexpr Recordings many_first{8, 2}, few_first{2, 8};
+  const double repeats = LocaliserOptions().repeats;
+  EXPECT_LT(answers(true, repeats, buildings, many_first).all, buildings / 3);
+  const Answers by_scores = answers(true, 0, buildings, few_first);
+  EXPECT_EQ(by_scores.wrong, by_scores.all);
+  EXPECT_LT(2 * answers(true, repeats, buildings, few_first).wrong, by_scores.wrong);
+  EXPECT_GT(answers(false, repeats, buildings, many_first).all, buildings * 9 / 10);
+  EXPECT_GT(answers(false, repeats, buildings, few_first).all, buildings * 9 / 10);
+}
+
+// Two places that are equal in front and differ behind are told apart by looks in both directions,
+// whichever was taken first.
+TEST(RecordedViews, AreAskedInTheDirectionsOfAllLooks) {
+  constexpr int buildings = 40;
+  constexpr double turn_rad = std::numbers::pi;
+  for (const bool behind_first : {false, true}) {
+    int answered = 0;
+    for (int i = 0; i < buildings; ++i) {
+      const auto trial = static_cast<std::uint32_t>(i);
+      const auto front = test::random_room(7000 + i, 150);
+      const auto behind = test::random_room(8000 + i, 60);
+      TopologicalMap map;
+      record(front, 0, 0, 4, trial, map);
+      record(behind, 0, turn_rad, 4, trial, map);
+      record(front, 50, 0, 4, trial, map);
+      record(test::random_room(9000 + i, 60), 50, turn_rad, 4, trial, map);
+      const auto look = [&](const std::vector<PlaceLine>& room, double forward_m, int seed) {
+        return test::view_of(recorded(camera_view(room, {forward_m, 0, 0}).lines, seed, trial));
+      };
+      std::vector<Look> looks{{look(front, 0.4, 3), 0}, {look(behind, -0.4, 4), turn_rad}};
+      if (behind_first) looks = {{looks[1].view, 0}, {looks[0].view, turn_rad}};
+      const auto answer = make_localiser("lines", map)->localise_looks(looks);
+      answered += answer.status == LocalisationStatus::answered && answer.pose.x_m < 25;
+    }
+    EXPECT_GT(answered, buildings * 9 / 10) << behind_first;
+  }
 }
 
 // Other places are told apart although places may be equal.

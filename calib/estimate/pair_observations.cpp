@@ -11,6 +11,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/rig.h"
 
 namespace vernier {
@@ -108,12 +109,7 @@ PairObservations selected(const PairObservations& pairs, const std::vector<bool>
 }
 
 void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place) {
-  if (rig.cameras.size() != 2) {
-    throw Error(
-        place.empty() ? "pairs" : place,
-        fmt::format("matched pairs need a rig of two cameras, this one has {}", rig.cameras.size()),
-        "extract the two cameras from the rig first");
-  }
+  internal::require_pair(rig, place.empty() ? "pairs" : place);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double sigma = pairs.sigma_of(i);
     if (!(sigma > 0 && std::isfinite(sigma))) {

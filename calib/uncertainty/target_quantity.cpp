@@ -14,6 +14,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/triangulation.h"
@@ -22,14 +23,7 @@ namespace vernier::internal {
 namespace {
 
 constexpr int grid_columns = 8, grid_rows = 6;
-
-void require_a_pair(const Rig& rig, const std::string& what) {
-  if (rig.cameras.size() == 2) return;
-  throw Error(what,
-              fmt::format("it needs a pair and the rig has {} camera{}", rig.cameras.size(),
-                          rig.cameras.size() == 1 ? "" : "s"),
-              "choose projection or a parameter");
-}
+constexpr const char* no_pair = "choose projection or a parameter";
 
 /// Central differences along each parameter: steps of 1e-3 px, 1e-6 in everything else.
 Eigen::MatrixXd derivative(const Rig& rig,
@@ -171,19 +165,19 @@ TargetQuantity target_quantity(const Rig& rig, const std::string& what, double a
     throw Error(what, "its distance is not above 0 and at most 1e6 m", "give metres");
   }
   if (what == "depth") {
-    require_a_pair(rig, what);
+    require_pair(rig, what, "RIG", no_pair);
     return {fmt::format("depth at {} m", at_m), "m", depth_gradient(rig, at_m)};
   }
   if (what == "projection") {
     return {fmt::format("projection at {} m", at_m), "px", projection_gradient(rig, at_m)};
   }
   if (what == "rectification") {
-    require_a_pair(rig, what);
+    require_pair(rig, what, "RIG", no_pair);
     return {fmt::format("vertical disparity at {} m", at_m), "px",
             rectification_gradient(rig, at_m)};
   }
   if (what == "baseline") {
-    require_a_pair(rig, what);
+    require_pair(rig, what, "RIG", no_pair);
     Eigen::RowVectorXd g = Eigen::RowVectorXd::Zero(parameter_count(rig));
     g.tail<3>() = rig.T_camera_first[1].t.normalized().transpose();
     return {"baseline", "m", g};

@@ -15,6 +15,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/formats/imported_rig.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -54,13 +55,13 @@ std::vector<std::string> listed(const std::string& list) {
   return words;
 }
 
-/// Keeps the cameras of a list such as "P2,P3", in its order. What is known of the others goes, and
-/// so does a covariance, which is of all.
+/// Keeps the cameras of a list such as "P2,P3", in its order, with their part of the covariance.
+/// The evidence, which is of all cameras, goes.
 void keep_cameras(ReadRig& read, const std::string& list) {
   if (list.empty()) return;
   RigEstimate& estimate = read.estimate;
   const Rig& rig = estimate.rig;
-  std::vector<PlacedCamera> kept;
+  std::vector<int> kept;
   std::set<std::string> seen;
   for (const std::string& name : listed(list)) {
     std::size_t i = 0;
@@ -73,13 +74,16 @@ void keep_cameras(ReadRig& read, const std::string& list) {
                                                              : " is given twice"),
                   "give some of " + names);
     }
-    kept.push_back({rig.cameras[i], rig.T_camera_first[i]});
+    kept.push_back(static_cast<int>(i));
   }
   if (kept.empty()) throw Error("--cameras", "names no camera", "give some of the rig's");
-  if (estimate.covariance || estimate.covariance_mvb) {
-    read.notes.emplace_back("the covariance is of all cameras and is dropped");
+  const bool had_evidence = estimate.evidence.has_value();
+  estimate = part_of(estimate, kept);
+  if (had_evidence && !estimate.evidence) {
+    read.notes.emplace_back(
+        "the views and corners are of all cameras and are dropped; the covariance of the kept "
+        "cameras and the figures of the whole calibration stay");
   }
-  estimate = RigEstimate{rig_of(std::move(kept)), {}, {}, {}, {}, estimate.other_keys};
 }
 
 /// Renames the cameras from a list such as "left,right".
@@ -210,7 +214,7 @@ void add_convert(CLI::App& app, Session& session) {
   verb->add_option("--model", o->model,
                    "camera model (default: the smallest that represents the input exactly)");
   verb->add_option("--cameras", o->cameras,
-                   "cameras to keep, in this order, such as P2,P3; a covariance is dropped");
+                   "cameras to keep, in this order, such as P2,P3, with their covariance");
   verb->add_option("--names", o->names, "camera names, such as left,right");
   verb->add_option("--size", o->size,
                    "image size, such as 640x480, if missing in an OpenCV or KITTI file");

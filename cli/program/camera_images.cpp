@@ -4,6 +4,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/rig.h"
 #include "cli/program/session.h"
 #include "stereo/grey_levels.h"
@@ -48,11 +49,7 @@ RectifiedPair read_camera_images(const Rig& rig,
                                  const std::string& left,
                                  const std::string& right,
                                  Session& session) {
-  if (rig.cameras.size() != 2) {
-    throw Error(rig_name,
-                fmt::format("the rig has {} cameras; rectification needs two", rig.cameras.size()),
-                "give the two-camera rig that took the images");
-  }
+  require_pair(rig, rig_name, rig_name);
   RectifiedPair raw;
   raw.left = read_of(rig.cameras[0], rig_name, left, session);
   raw.right = read_of(rig.cameras[1], rig_name, right, session);

@@ -15,6 +15,7 @@
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/formats/asl_sensor.h"
 #include "calib/formats/colmap_cameras.h"
 #include "calib/formats/imported_rig.h"
@@ -269,10 +270,10 @@ ReadRig read_stereo_rig(const std::string& name,
                         Session& session,
                         const std::vector<std::string>& images) {
   ReadRig read = read_named_rig(name, session, images);
-  if (read.estimate.rig.cameras.size() != 2) {
-    throw Error(name, fmt::format("has {} cameras, not two", read.estimate.rig.cameras.size()),
-                "give a stereo rig; convert --cameras makes one of several cameras");
-  }
+  std::string files;
+  for (const fs::path& file : named_files(name))
+    files += (files.empty() ? "" : " ") + file.string();
+  require_pair(read.estimate.rig, name, files);
   return read;
 }
 

@@ -16,6 +16,7 @@
 #include "calib/base/output_files.h"
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "cli/program/option_checks.h"
@@ -150,10 +151,7 @@ ComparisonReport add_comparison(OutputFiles& outputs,
 
 Rig rig_for_rendering(const RenderArguments& options, Session& session) {
   const ReadRig file = read_named_rig(options.rig, session);
-  if (file.estimate.rig.cameras.size() != 2) {
-    throw Error(options.rig, fmt::format("has {} cameras", file.estimate.rig.cameras.size()),
-                "use a rig of two cameras");
-  }
+  require_pair(file.estimate.rig, options.rig, options.rig);
   return file.estimate.rig;
 }
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "calib/camera.h"
-#include "calib/estimate/rig_pair.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_estimate.h"

@@ -117,10 +117,50 @@ class Convert(Case):
         self.works('convert', calib, '--size', '1241x376', '-o', self.out('back.json'))
         self.assertEqual([c['name'] for c in self.rig()['cameras']], ['left', 'right'])
 
-    def test_kept_cameras_lose_the_covariance_and_it_is_said(self):
-        done = self.works('convert', 'nominal', '--cameras', 'right', '-o', self.out('back.json'))
-        self.assertIn('the covariance is of all cameras and is dropped', done.stderr)
-        self.assertNotIn('covariance', self.rig())
+    def test_kept_cameras_keep_their_covariance(self):
+        self.works('convert', 'nominal', '--cameras', 'right', '-o', self.out('back.json'))
+        names = self.nominal['parameter_names']
+        own = [i for i, name in enumerate(names)
+               if name.startswith('right.') and not name.endswith(('_rad', '_m'))]
+        self.assertEqual(self.rig()['parameter_names'], [names[i] for i in own])
+        matrix = self.nominal['covariance']['matrix']
+        for i, row in zip(own, self.rig()['covariance']['matrix']):
+            for j, value in zip(own, row):
+                self.assertAlmostEqual(value, matrix[i][j], delta=1e-12 * abs(matrix[i][j]))
+        self.assertEqual(self.rig()['covariance']['kind'], self.nominal['covariance']['kind'])
+
+    def three_cameras(self):
+        """A rig of a, b, c with a covariance and no views."""
+        rig = {key: self.nominal[key] for key in ('format', 'version')}
+        left, right = self.nominal['cameras']
+        rig['cameras'] = [{**left, 'name': 'a'}, {**right, 'name': 'b'}, {**right, 'name': 'c'}]
+        values = dict(zip(self.nominal['parameter_names'], self.nominal['parameters']))
+        old = {'a': 'left', 'b': 'right', 'c': 'right'}
+        poses = ('wx_rad', 'wy_rad', 'wz_rad', 'tx_m', 'ty_m', 'tz_m')
+        own = [n.split('.')[1] for n in values if n.startswith('left.')]
+        names = [(c, p) for c in 'abc' for p in own] + [(c, p) for c in 'bc' for p in poses]
+        rig['parameter_names'] = ['.'.join(n) for n in names]
+        rig['parameters'] = [values[f'{old[c]}.{p}'] for c, p in names]
+        rig['covariance'] = {'kind': 'prior', 'matrix': [
+            [(i == j) * (0.01 if p.endswith('_px') else 1e-6) for j in range(len(names))]
+            for i, (c, p) in enumerate(names)]}
+        self.out('three.json').write_text(json.dumps(rig))
+        return self.out('three.json')
+
+    def test_a_rig_of_three_says_how_to_get_a_pair(self):
+        three, pair = self.three_cameras(), self.out('pair.json')
+        board = ('--board', '9x6', '--square-m', '0.03', '--pixel-sigma', '0.2')
+        advice = ('advise', three, '--reduce', 'depth', *board)
+        remedy = '--cameras a,b -o pair.json'
+        self.complains(*advice, of=f'vernier convert RIG {remedy}')
+        image = ROOT / 'datasets/none.png'
+        self.complains('rectify', '--rig', three, '--left', image, '--right', image, '-o',
+                       f'{self.out("r")}/', of='')
+        self.complains('plan', three, '--depth-sd', '0.05', of='')
+        self.works('convert', three, '--cameras', 'b,c', '-o', pair)
+        self.works('advise', pair, *advice[2:])
+        self.assertEqual(len(self.rig('pair.json')['covariance']['matrix']),
+                         len(self.nominal['parameters']))
 
     def test_a_binary_colmap_model_is_refused_with_the_remedy(self):
         self.out('model').mkdir()

@@ -103,7 +103,7 @@ class Odometry(verb_calls.ProgramCase):
         found = json.loads(self.done(*call, '--rig', 'a.yaml,b.yaml', '--truth', 'data.csv', '--json'))
         self.assertLess(found['truth']['end_error_m'], 0.005)
         self.refused(*call, '--rig', 'calib.txt', '--truth', 'data.csv', says='poses of the body')
-        self.refused(*call, '--rig', 'a.yaml', '--truth', 'data.csv', says='has 1 cameras, not two')
+        self.refused(*call, '--rig', 'a.yaml', '--truth', 'data.csv', says='it needs a pair and the rig has 1 camera;')
         self.refused(*call, '--rig', 'a.yaml,calib.txt', says='is not of the format asl like a.yaml')
 
     def test_a_simulated_robot(self):

@@ -184,7 +184,7 @@ class Rectify(CalibratedCase):
                         'calibration'):
                 rig.pop(key, None)
         self.complains(*self.arguments(rig=self.changed_rig('one.json', one_camera)), '-q',
-                       of='the rig has 1 cameras', leaves=[out])
+                       of='it needs a pair and the rig has 1 camera;', leaves=[out])
 
         def larger(rig):
             rig['cameras'][1]['size_px'] = [1280, 960]

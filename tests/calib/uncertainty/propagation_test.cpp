@@ -17,7 +17,7 @@
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
-#include "calib/estimate/rig_pair.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -74,6 +76,58 @@ std::string step_text(const Pose& T) {
   return text + "  - [0.0, 0.0, 0.0, 1.0]\n";
 }
 
+/// Throws Error if the two poses of a camera differ by more than rounding to six digits does.
+void check_agreement(const Pose& chain,
+                     const Pose& by_imu,
+                     double lengths_m,
+                     const YamlNode& node) {
+  constexpr double rounding = 1e-5;
+  const double turn = vector_from_rotation(chain.R * by_imu.R.transpose()).norm();
+  const double shift_m = (chain.t - by_imu.t).norm();
+  if (turn <= rounding && shift_m <= rounding * lengths_m) return;
+  throw Error(node.place(),
+              fmt::format("T_cn_cnm1 and the T_cam_imu of the two cameras disagree by {:.3g} "
+                          "degrees and {:.3g} m",
+                          turn * 180 / std::numbers::pi, shift_m),
+              "remove the one that is out of date");
+}
+
+/// Poses from camera to camera, from either source.
+class Chain {
+ public:
+  explicit Chain(double unit_m) : unit_m_(unit_m) {}
+
+  /// T_cn_cnm1 of the next camera; the identity for the first.
+  Pose step(const YamlNode& node, bool first) {
+    std::optional<Pose> T_imu;
+    if (node.has("T_cam_imu")) T_imu = imported_pose(node.at("T_cam_imu"), unit_m_);
+    Pose T;
+    if (!first && T_imu && T_before_imu_) {
+      T = *T_imu * T_before_imu_->inverse();
+      if (node.has("T_cn_cnm1")) {
+        const Pose chain = imported_pose(node.at("T_cn_cnm1"), unit_m_);
+        check_agreement(chain, T, unit_m_ + T_imu->t.norm() + T_before_imu_->t.norm(), node);
+        T = chain;
+      } else {
+        by_imu_ += (by_imu_.empty() ? "" : ", ") + node.place();
+      }
+    } else if (!first) {
+      T = imported_pose(node.at("T_cn_cnm1"), unit_m_);
+    }
+    if (!T_imu && T_before_imu_) T_imu = T * *T_before_imu_;
+    T_before_imu_ = T_imu;
+    return T;
+  }
+
+  /// The cameras whose pose was taken from T_cam_imu; empty for none.
+  const std::string& by_imu() const { return by_imu_; }
+
+ private:
+  double unit_m_;
+  std::optional<Pose> T_before_imu_;  ///< of the camera before, its own or along the chain
+  std::string by_imu_;
+};
+
 }  // namespace
 
 ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const ImportOptions& options) {
@@ -84,20 +138,23 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const Import
   ImportedRig imported;
   std::vector<PlacedCamera> cameras;
   std::set<std::string> names;
+  std::vector<std::string> imu_notes;
+  Chain chain(options.unit_m);
   for (std::size_t i = 0; root.has(fmt::format("cam{}", i)); ++i) {
     const YamlNode node = root.at(fmt::format("cam{}", i));
     Camera camera = camera_from_opencv(read_intrinsics(node), node.at("resolution").size_px(),
                                        node.place(), options.model);
     if (node.has("rostopic")) camera.name = camera_of_topic(node.at("rostopic").text());
     if (!camera.name.empty()) names.insert(camera.name);
-    for (const char* key : {"T_cam_imu", "timeshift_cam_imu"}) {
-      if (node.has(key)) imported.notes.push_back(node.at(key).place() + " is ignored");
+    if (node.has("timeshift_cam_imu")) {
+      imported.notes.push_back(node.at("timeshift_cam_imu").place() + " is ignored");
     }
-    const Pose T = i == 0 ? Pose{}
-                          : imported_pose(node.at("T_cn_cnm1"), options.unit_m) *
-                                cameras.back().T_camera_reference;
-    cameras.push_back({camera, T});
+    if (node.has("T_cam_imu")) imu_notes.push_back(node.at("T_cam_imu").place() + " is ignored");
+    const Pose step = chain.step(node, i == 0);
+    cameras.push_back({camera, i == 0 ? step : step * cameras.back().T_camera_reference});
   }
+  if (!chain.by_imu().empty()) imu_notes = {chain.by_imu() + ": the pose is from T_cam_imu"};
+  imported.notes.insert(imported.notes.end(), imu_notes.begin(), imu_notes.end());
   if (names.size() != cameras.size()) {
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       cameras[i].camera.name = fmt::format("cam{}", i);

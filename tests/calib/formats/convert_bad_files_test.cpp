@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "calib/camera.h"
@@ -229,6 +230,66 @@ TEST(ConvertBadFiles, Kalibr) {
        {"  - [0.9", "  - [0.8", "cam1.T_cn_cnm1: is not a rotation"}},
       read);
   expect_cuts_are_refused("camchain.yaml", good, read);
+}
+
+/// The camchain with a T_cam_imu for each of the cameras listed, and T_cn_cnm1 if `steps`.
+std::string with_imu(const Rig& rig, const std::vector<std::size_t>& cameras, bool steps) {
+  const Pose T_imu{rotation_from_vector({1.2, -0.4, 0.3}), {0.05, -0.02, 0.3}};  // first from IMU
+  std::string text = kalibr_camchain(rig)[0].text;
+  if (!steps) {
+    for (std::size_t at; (at = text.find("  T_cn_cnm1:")) != std::string::npos;) {
+      const std::string last = "  - [0.0, 0.0, 0.0, 1.0]\n";
+      text.erase(at, text.find(last, at) + last.size() - at);
+    }
+  }
+  for (const std::size_t i : cameras) {
+    const Pose T = rig.T_camera_first[i] * T_imu;
+    std::string pose = "  T_cam_imu:\n";
+    for (int r = 0; r < 3; ++r) {  // rounded as by hand
+      pose += fmt::format("  - [{:.7f}, {:.7f}, {:.7f}, {:.7f}]\n", T.R(r, 0), T.R(r, 1), T.R(r, 2),
+                          T.t[r]);
+    }
+    const std::string camera = fmt::format("cam{}:\n", i);
+    text.insert(text.find(camera) + camera.size(), pose + "  - [0.0, 0.0, 0.0, 1.0]\n");
+  }
+  return text;
+}
+
+TEST(ConvertBadFiles, KalibrPosesFollowFromTheImu) {
+  Folder folder;
+  const Rig rig = rig_of_cameras(OpenCv4{}, 3);
+  const ImportedRig read =
+      read_kalibr_camchain(folder.write("c.yaml", with_imu(rig, {0, 1, 2}, false)));
+  for (std::size_t i = 1; i < 3; ++i) {
+    const Pose T = read.rig.T_camera_first[i] * rig.T_camera_first[i].inverse();
+    EXPECT_LT(vector_from_rotation(T.R).norm(), 1e-6);
+    EXPECT_LT((read.rig.T_camera_first[i].t - rig.T_camera_first[i].t).norm(), 1e-6);
+  }
+  ASSERT_EQ(read.notes.size(), 1U);
+  EXPECT_NE(read.notes[0].find("the pose is from T_cam_imu"), std::string::npos);
+  const std::string gap = folder.write("gap.yaml", with_imu(rig, {1, 2}, false)).string();
+  EXPECT_NE(
+      test::error_message([&] { read_kalibr_camchain(gap); }).find("cam1: has no \"T_cn_cnm1\""),
+      std::string::npos);
+}
+
+TEST(ConvertBadFiles, KalibrPosesGivenTwiceMustAgree) {
+  Folder folder;
+  const Rig rig = rig_of_cameras(OpenCv4{}, 3);
+  // The chain is what is read; the second camera's pose from the IMU follows along it.
+  const auto both = folder.write("c.yaml", with_imu(rig, {0, 2}, true));
+  EXPECT_EQ(read_kalibr_camchain(both).rig.T_camera_first[1].t, rig.T_camera_first[1].t);
+  Rig moved = rig;
+  moved.T_camera_first[2].t.x() += 1e-3;
+  std::string text = with_imu(moved, {0, 2}, true);
+  const std::string chain = kalibr_camchain(rig)[0].text;
+  const std::size_t own = chain.rfind("  T_cn_cnm1"), old = text.rfind("  T_cn_cnm1");
+  text.replace(old, text.find("1.0]\n", old) - old, chain, own, chain.find("1.0]\n", own) - own);
+  const std::string wrong = folder.write("w.yaml", text).string();
+  EXPECT_NE(test::error_message([&] {
+              read_kalibr_camchain(wrong);
+            }).find("cam2: T_cn_cnm1 and the T_cam_imu of the two cameras disagree by"),
+            std::string::npos);
 }
 
 TEST(ConvertBadFiles, KalibrChainsAndNames) {

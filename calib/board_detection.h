@@ -36,8 +36,9 @@ struct BoardDetection {
   std::vector<RejectedCorner> rejected_corners;  ///< detected but not used
   std::string reason;                            ///< why no board was found; empty if one was
   bool goes_on = false;                          ///< the board has more corners than asked for
-  int camera = 0;                                ///< index of its pattern
-  int frame = 0;                                 ///< from the number in its name
+  std::vector<int> ids_beyond;  ///< ids of tags of an AprilTag grid in its next rows
+  int camera = 0;               ///< index of its pattern
+  int frame = 0;                ///< from the number in its name
 };
 
 /// Summary of the corners detected but not used, such as "3 corners at the image's border, 1 corner
@@ -73,8 +74,8 @@ struct ImageDetections {
 /// same number form one frame (calib/board/frame_numbering.h). A frame counts for the cameras that
 /// found the board. An image that cannot be read is refused like one without a board. Throws Error
 /// if a camera shares no frame number with those before it or has one twice, if none of its images
-/// can be read, sizes differ, no board is found, or more images show a board of more corners than
-/// of those asked for.
+/// can be read, sizes differ, no board is found, more images show a board of more corners than
+/// of those asked for, or one shows an AprilTag grid with rows that the target has not.
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target);
 
 /// Writes a corners file of all images, with a line of dashes for each refused one.

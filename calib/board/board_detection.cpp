@@ -105,7 +105,31 @@ void add_detection(const BoardDetection& found, ImageDetections& result) {
   result.used.push_back(found);
 }
 
+/// Throws Error, naming them, if images show tags beyond the board's in its own arrangement.
+void check_ids(const ImageDetections& found, const std::string& place, const std::string& name) {
+  std::set<int> ids;
+  std::size_t images = 0;
+  for (const BoardDetection& image : found.used) {
+    ids.insert(image.ids_beyond.begin(), image.ids_beyond.end());
+    images += image.ids_beyond.empty() ? 0 : 1;
+  }
+  if (ids.empty()) return;
+  std::string list;
+  constexpr std::size_t shown = 12;
+  std::size_t count = 0;
+  for (const int id : ids) {
+    if (count++ < shown) list += (list.empty() ? "" : ", ") + std::to_string(id);
+  }
+  if (ids.size() > shown) list += ", …";
+  throw Error(place,
+              "in " + std::to_string(images) + " of " +
+                  std::to_string(found.refused.size() + found.used.size()) +
+                  " images the board goes on with tags that the " + name + " has not: " + list,
+              "count its rows and columns again");
+}
+
 void check_found(const ImageDetections& found, const std::string& place, const std::string& name) {
+  check_ids(found, place, name);
   const auto& refused = found.refused;
   const auto bigger = std::count_if(refused.begin(), refused.end(),
                                     [](const BoardDetection& image) { return image.goes_on; });

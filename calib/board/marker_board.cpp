@@ -74,8 +74,9 @@ std::string marker_fault(const cv::Mat& grey,
   if (seen.repeated > 0) {
     reason += "; " + std::to_string(seen.repeated) + " markers appear more than once";
   }
-  if (seen.foreign > 0) {
-    reason += "; " + std::to_string(seen.foreign) + " markers have ids that are not on this board";
+  if (!seen.foreign.empty()) {
+    reason +=
+        "; " + std::to_string(seen.foreign.size()) + " markers have ids that are not on this board";
   }
   if (seen.markers.size() == 1) {
     reason += "; only marker " + std::to_string(seen.markers[0].id) + " of " +
@@ -176,13 +177,48 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
   return mistakes;
 }
 
+/// A grid of more columns or fewer, with rows enough for the same tags.
+AprilTagGrid wider(AprilTagGrid grid, int columns) {
+  const int tags = grid.columns * grid.rows;
+  grid.columns = std::max(1, grid.columns + columns);
+  grid.rows = std::max(grid.rows, (tags + grid.columns - 1) / grid.columns);
+  return grid;
+}
+
+std::string count_remedy(const AprilTagGrid& grid) {
+  return "they match a board of " + std::to_string(grid.columns) + " columns: count them again";
+}
+
 std::vector<Mistake> mistakes_for(const AprilTagGrid& grid) {
   AprilTagGrid other = grid;
   other.top_row_first = !grid.top_row_first;
   return {{turned_layouts(other),
            grid.top_row_first ? "they are numbered from the bottom row: leave out --top-row-first"
                               : "they are numbered from the top row: give --top-row-first"},
-          {turned_layouts(swapped(grid)), swap_remedy(grid)}};
+          {turned_layouts(swapped(grid)), swap_remedy(grid)},
+          {turned_layouts(wider(grid, 1)), count_remedy(wider(grid, 1))},
+          {turned_layouts(wider(grid, -1)), count_remedy(wider(grid, -1))}};
+}
+
+/// Ids beyond the grid's, of tags that are where a grid of more rows has them: tags elsewhere in
+/// the scene are not.
+std::vector<int> ids_beyond(const AprilTagGrid& grid, const DetectedMarkers& seen) {
+  std::vector<DetectedMarker> all = seen.markers;
+  const int own = grid.columns * grid.rows;
+  for (const DetectedMarker& marker : seen.foreign) {
+    const auto same = [&](const DetectedMarker& other) { return other.id == marker.id; };
+    if (std::count_if(seen.foreign.begin(), seen.foreign.end(), same) == 1) all.push_back(marker);
+  }
+  if (all.size() == seen.markers.size()) return {};
+  std::sort(all.begin(), all.end(),
+            [](const DetectedMarker& a, const DetectedMarker& b) { return a.id < b.id; });
+  AprilTagGrid higher = grid;
+  higher.rows = all.back().id / grid.columns + 1;
+  std::vector<int> ids;
+  for (const DetectedMarker& marker : best_layout(all, turned_layouts(higher)).second) {
+    if (marker.id >= own) ids.push_back(marker.id);
+  }
+  return ids;
 }
 
 /// The four corners of a tag as points of the grid.
@@ -242,6 +278,7 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
   const std::string name = name_of(grid);
   auto found = find_layout(grey, turned_layouts(grid), mistakes_for(grid), name, result);
   if (!found) return;
+  result.ids_beyond = ids_beyond(grid, found->seen);
   add_missed_markers(grey, found->layout, found->seen);
   const int border = found->seen.border_bits;
   const int cells = marker_dictionary(found->layout.dictionary)->markerSize + 2 * border;

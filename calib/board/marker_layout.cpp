@@ -44,13 +44,13 @@ DetectedMarkers find_at(const cv::Mat& grey, const MarkerLayout& layout, int bor
   std::map<int, int> count;
   for (const int id : ids) ++count[id];
   for (std::size_t i = 0; i < ids.size(); ++i) {
+    DetectedMarker marker{ids[i], {}};
+    for (int k = 0; k < 4; ++k) marker.corners_px[k] = {corners[i][k].x, corners[i][k].y};
     if (ids[i] >= static_cast<int>(layout.corners_m.size())) {
-      ++seen.foreign;
+      seen.foreign.push_back(marker);
     } else if (count[ids[i]] > 1) {
       ++seen.repeated;
     } else {
-      DetectedMarker marker{ids[i], {}};
-      for (int k = 0; k < 4; ++k) marker.corners_px[k] = {corners[i][k].x, corners[i][k].y};
       seen.markers.push_back(marker);
     }
   }

@@ -38,9 +38,9 @@ struct DetectedMarker {
 struct DetectedMarkers {
   std::vector<DetectedMarker> markers;  ///< ascending by id, each id once
   int border_bits = 1;
-  int repeated = 0;   ///< ids ignored because they were detected more than once
-  int foreign = 0;    ///< ids ignored because they are not on the board
-  int undecoded = 0;  ///< quadrilaterals without a known pattern
+  int repeated = 0;                     ///< ids ignored because they were detected more than once
+  std::vector<DetectedMarker> foreign;  ///< with ids that are not on the board
+  int undecoded = 0;                    ///< quadrilaterals without a known pattern
 };
 
 /// All markers of the layout's dictionary, with the border width that yields more of them.

@@ -262,6 +262,38 @@ TEST_F(RenderedBoards, BoardOfMoreCornersThanSaidIsNoResult) {
   }
 }
 
+TEST_F(RenderedBoards, TagsBeyondTheGridAreNamed) {
+  const cv::Mat tags = photograph(draw(april, 2), usual_camera(april, 0.5));
+  const std::string files = save(tags).string();
+  const auto complaint = [&](int columns, int rows) -> std::string {
+    try {
+      detect_images({files}, AprilTagGrid{columns, rows, april.tag_m, april.spacing});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(6, 5), "");
+  EXPECT_NE(complaint(6, 4).find("in 1 of 1 images the board goes on with tags that the"),
+            std::string::npos);
+  EXPECT_NE(complaint(6, 4).find("has not: 24, 25, 26, 27, 28"), std::string::npos)
+      << complaint(6, 4);
+  EXPECT_NE(complaint(5, 5).find("a board of 6 columns: count them again"), std::string::npos)
+      << complaint(5, 5);
+  EXPECT_NE(complaint(7, 5).find("a board of 6 columns: count them again"), std::string::npos)
+      << complaint(7, 5);
+  EXPECT_EQ(complaint(6, 6), "");  // a row hidden, or none: no tag tells
+
+  // A tag that lies elsewhere in the scene is no part of the board.
+  cv::Mat stray = cv::Mat(tags.rows + 120, tags.cols, CV_8U, 255.0), tag;
+  tags.copyTo(stray.rowRange(0, tags.rows));
+  cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11), 27, 80,
+                        tag, 2);
+  tag.copyTo(stray(cv::Rect(30, tags.rows + 20, 80, 80)));
+  const BoardDetection seen = detect(stray, AprilTagGrid{6, 4, april.tag_m, april.spacing});
+  EXPECT_EQ(std::count(seen.ids_beyond.begin(), seen.ids_beyond.end(), 27), 0);
+}
+
 TEST_F(RenderedBoards, ReasonsAreMeasured) {
   const BoardCamera camera = usual_camera(chessboard, 0.4);
   const cv::Mat sharp = photograph(draw(chessboard), camera);

@@ -51,6 +51,10 @@ std::string shortened(std::string_view text) {
 
 std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"'; }
 
+std::string counted(std::int64_t count, std::string_view noun) {
+  return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
+}
+
 std::string alternatives(std::span<const std::string> words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

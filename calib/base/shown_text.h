@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,9 @@ std::string in_quotes(std::string_view text);
 
 /// The same without quotes, for keys that are part of a place.
 std::string shortened(std::string_view text);
+
+/// "1 view", "2 views"
+std::string counted(std::int64_t count, std::string_view noun);
 
 /// "a, b or c"
 std::string alternatives(std::span<const std::string> words);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/board/board_aspect.h"
 #include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
@@ -65,7 +66,7 @@ std::string reason_not_to_test(const RigEstimate& usual, const CalibrationOption
   if (options.warp == BoardWarp::free) return "the board's warp is estimated";
   if (options.pixel_sigma_px > 0 || options.white_noise) return "the noise is given";
   if (summary.views < fewest_views_of_bends) {
-    return fmt::format("{} views; it takes {}", summary.views, fewest_views_of_bends);
+    return fmt::format("{}; it takes {}", counted(summary.views, "view"), fewest_views_of_bends);
   }
   for (const std::string& doubt : summary.trust_warnings) {
     if (!doubt.starts_with(bent_board_doubt)) return "the calibration is doubtful";
@@ -176,7 +177,8 @@ EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& opt
   const int views = usual.calibration->views;
   if (views < fewest_views_of_effects) {
     test.bend = board_test(usual, bend_fields(usual.evidence->observations.target_m));
-    test.not_tested = fmt::format("{} views; it takes {}", views, fewest_views_of_effects);
+    test.not_tested =
+        fmt::format("{}; it takes {}", counted(views, "view"), fewest_views_of_effects);
     return test;
   }
   const bool moves = usual.rig.cameras.size() > 1;

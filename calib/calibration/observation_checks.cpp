@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/board/board_homography.h"
 #include "calib/board/corner_difference.h"
 #include "calib/board/nearest_corners.h"
@@ -144,14 +145,16 @@ void check_mirrored(const BoardObservations& observations,
   for (const auto& [camera, count] : of_camera) {
     if (count.first != count.second) continue;
     throw Error(fmt::format("camera {}", camera),
-                fmt::format("the board is mirrored in all its {} views, but not in those of every "
-                            "camera",
-                            count.second),
+                fmt::format("the board is mirrored in {}, but not in those of every camera",
+                            count.second == 1 ? "its only view"
+                                              : fmt::format("all its {} views", count.second)),
                 cure);
   }
   if (mirrored.size() > others.size()) std::swap(mirrored, others);
   throw Error(list_of(mirrored),
-              fmt::format("the board is mirrored against the other {} views", others.size()), cure);
+              "the board is mirrored against the other " +
+                  counted(static_cast<std::int64_t>(others.size()), "view"),
+              cure);
 }
 
 void check_repeats(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {

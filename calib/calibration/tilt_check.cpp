@@ -12,6 +12,7 @@
 #include <string>
 
 #include "calib/base/decompositions.h"
+#include "calib/base/shown_text.h"
 #include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -118,9 +119,11 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
     }
     if (tilts < 3) {
       throw Error(place,
-                  fmt::format("its {} views show the board at only {} distinct tilt{}, and the "
-                              "intrinsics need three",
-                              alone.normals.size(), tilts, tilts == 1 ? "" : "s"),
+                  fmt::format("its {} the board at only {}, and the intrinsics need three",
+                              alone.normals.size() == 1
+                                  ? "1 view shows"
+                                  : fmt::format("{} views show", alone.normals.size()),
+                              counted(static_cast<std::int64_t>(tilts), "distinct tilt")),
                   cure);
     }
     if (known_to < untrusted) continue;

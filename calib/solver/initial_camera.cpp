@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "calib/base/decompositions.h"
+#include "calib/base/shown_text.h"
 #include "calib/board/board_homography.h"
 #include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
@@ -180,7 +181,7 @@ InitialCamera initial_camera(const BoardObservations& observations,
                              const CameraModel& model,
                              const std::string& place) {
   if (views.size() < 3) {
-    throw Error(place, std::to_string(views.size()) + " views of the board",
+    throw Error(place, counted(static_cast<std::int64_t>(views.size()), "view") + " of the board",
                 "at least three, at different tilts, are needed");
   }
   check_flat(observations.target_m);

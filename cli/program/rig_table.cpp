@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/covariance.h"
 #include "calib/estimate/outlier_lines.h"
 #include "calib/rig.h"
@@ -51,12 +52,13 @@ std::optional<Eigen::Vector2d> estimated_warp_m(const RigEstimate& estimate) {
 /// How well the data are fitted; nothing of priors alone.
 std::string fit_line(const CalibrationSummary& s) {
   if (s.views == 0 && s.dof == 0) return "no corners and no pairs, priors alone\n";
-  const std::string views = s.source == "board"   ? "views"
-                            : s.source == "pairs" ? (s.views == 1 ? "image pair" : "image pairs")
-                                                  : "board frames and image pairs";
+  const std::string views = s.source == "board" ? counted(s.views, "view")
+                            : s.source == "pairs"
+                                ? counted(s.views, "image pair")
+                                : fmt::format("{} board frames and image pairs", s.views);
   return fmt::format(
-      "{} {}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom{}\n",
-      s.views, views, s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
+      "{}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom{}\n",
+      views, s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
       s.pixel_sigma_px, s.chi2, s.dof, s.effects ? " (without random effects)" : "");
 }
 

@@ -317,9 +317,9 @@ void run(const PlanArguments& o, Session& session) {
       if (plan.scale) widen_by_scale(plan, how, *plan.needed);
       if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
         plan.limit = fmt::format(
-            "it takes more than {} views of this kind; what limits is each "
+            "it takes more than {} of this kind; what limits is each "
             "view: more corners, larger tilts, a closer board or less noise",
-            how.most_views);
+            counted(how.most_views, "view"));
       }
     }
     std::vector<int> numbers;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/plan_result.h"
+#include "calib/base/shown_text.h"
 #include "calib/interval.h"
 #include "calib/planning/views_needed.h"
 #include "cli/program/session.h"
@@ -56,7 +57,8 @@ std::string answer_text(const PlanResult& plan) {
   if (!plan.needed) return "not known: too few trials to tell whether it can be reached\n";
   const ViewsNeeded& needed = *plan.needed;
   if (plan.from_calibration && needed.interval.high <= plan.known.taken) {
-    return fmt::format("reached: the {} views so far suffice\n", plan.known.taken);
+    return fmt::format("reached: the {} so far {}\n", counted(plan.known.taken, "view"),
+                       plan.known.taken == 1 ? "suffices" : "suffice");
   }
   std::string text =
       fmt::format("views needed: {}, {:.0f} to {:.0f} with {:.0f} % confidence", needed.views,

@@ -13,6 +13,7 @@
 #include "calib/base/error_place.h"
 #include "calib/base/file_in_progress.h"
 #include "calib/base/output_files.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
@@ -67,10 +68,11 @@ void report(const std::vector<double>& edges,
        {"baseline_m", baseline_m},
        {"doubts", session.trust_warnings()},
        {"output", output}},
-      fmt::format("{} views: {:.0f} segments and {:.0f} reliable lines each (medians); "
+      fmt::format("{}: {:.0f} segments and {:.0f} reliable lines each (medians); "
                   "depths err as those of a pair with a baseline of {:.3f} m\nwritten to "
                   "{}\n",
-                  lines.size(), median(edges), median(lines), baseline_m, output));
+                  counted(static_cast<std::int64_t>(lines.size()), "view"), median(edges),
+                  median(lines), baseline_m, output));
 }
 
 }  // namespace

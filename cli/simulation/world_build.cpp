@@ -18,6 +18,7 @@
 
 #include "calib/base/error_place.h"
 #include "calib/base/output_files.h"
+#include "calib/base/shown_text.h"
 #include "calib/board_detection.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -194,8 +195,8 @@ void report(const BuildArguments& options,
                     *r.floor_m, options.input.at.height_m - *r.floor_m));
   }
   if (r.lines == 0) {
-    session.add_trust_warning(fmt::format("no line was seen by {} views: check the poses, and --up",
-                                          options.how.min_sightings));
+    session.add_trust_warning(fmt::format("no line was seen by {}: check the poses, and --up",
+                                          counted(options.how.min_sightings, "view")));
   }
   const double route_m = route_length_m(world.route);
   Json json{{"file", options.output},    {"views", seen.views.size()},
@@ -204,14 +205,16 @@ void report(const BuildArguments& options,
             {"surfaces", r.surfaces},    {"surfaces_on_the_way", r.on_the_way},
             {"hidden_share", hidden},    {"floor_m", r.floor_m ? Json(*r.floor_m) : Json()},
             {"route_m", route_m},        {"doubts", session.trust_warnings()}};
-  session.result(json, fmt::format("{} views, {} segments: {} lines joined, {} of them seen by {} "
-                                   "views at least, of which {} are upright as far as is known\n{} "
-                                   "surfaces ({} more left out where the "
-                                   "cameras passed), which hide {:.1f} % of what the views saw; "
-                                   "route of {:.1f} m\nwritten to {}\n",
-                                   seen.views.size(), seen.segments, r.joined, r.lines,
-                                   options.how.min_sightings, r.upright, r.surfaces, r.on_the_way,
-                                   100 * hidden, route_m, options.output));
+  session.result(
+      json,
+      fmt::format("{}, {} segments: {} lines joined, {} of them seen by {} "
+                  "at least, of which {} are upright as far as is known\n{} "
+                  "surfaces ({} more left out where the "
+                  "cameras passed), which hide {:.1f} % of what the views saw; "
+                  "route of {:.1f} m\nwritten to {}\n",
+                  counted(static_cast<std::int64_t>(seen.views.size()), "view"), seen.segments,
+                  r.joined, r.lines, counted(options.how.min_sightings, "view"), r.upright,
+                  r.surfaces, r.on_the_way, 100 * hidden, route_m, options.output));
 }
 
 void run(const BuildArguments& options, const CLI::App& verb, Session& session) {

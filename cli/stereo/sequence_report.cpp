@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "cli/program/session.h"
 #include "cli/stereo/characterise_report.h"
 #include "sim/sequence/lost_again.h"
@@ -159,9 +160,10 @@ std::string sequence_text(const MeasuredSequence& sequence) {
                         entry.measured.samples, shown_figure(entry.otherwise),
                         entry.written ? "" : "default used: ", entry.note);
   }
-  text += fmt::format(
-      "\n{} lines, {} views, {} depth maps; intervals: bootstrap over {} blocks of the way\n",
-      sequence.lines, sequence.views, sequence.with_depth ? "with" : "without", sequence.clusters);
+  text +=
+      fmt::format("\n{} lines, {}, {} depth maps; intervals: bootstrap over {} blocks of the way\n",
+                  sequence.lines, counted(static_cast<std::int64_t>(sequence.views), "view"),
+                  sequence.with_depth ? "with" : "without", sequence.clusters);
   for (const NamedFigure& figure : sequence_figures) {
     const MeasuredValue& value = sequence.all.*figure.value;
     text += fmt::format("{:<14} {:>9} {:>20} {:>8}  {}\n", figure.name, shown_figure(value.value),

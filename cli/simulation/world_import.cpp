@@ -132,6 +132,7 @@ std::vector<PathCamera> level_by_cameras(ImportArguments& arguments, Mesh& mesh)
   }
   std::vector<PathCamera> cameras = read_camera_path(arguments.colmap);
   level(up_of(cameras, mesh, arguments.colmap), mesh, cameras);
+  options.is_level = true;
   options.unit_m = axes_and_unit(mesh, options.up_axis, options.unit_m, arguments.file).unit_m;
   if (!options.floor_m) {
     options.floor_m = *options.unit_m * median_height(cameras) - arguments.eye_height_m;
@@ -318,8 +319,10 @@ void add_world_import(CLI::App& world, Session& session) {
   verb->add_option("--shortest-m", o->options.shortest_m, "shorter edges are left out")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
-  verb->add_option("--upright-deg", o->options.upright_deg,
-                   "edges that lean by less become upright (0: none)")
+  verb->add_option(
+          "--upright-deg", o->options.upright_deg,
+          "edges that lean by at most this become upright where they stay at their surfaces "
+          "(0: none)")
       ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
   verb->add_option("--colmap", o->colmap,
@@ -331,7 +334,7 @@ void add_world_import(CLI::App& world, Session& session) {
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   verb->add_option("--leave-out", o->selection.leave_out,
-                   "parts with this word in their name, as IfcDoor (repeatable)");
+                   "parts with this word in their name or material, as IfcDoor (repeatable)");
   verb->add_flag("--no-route", o->no_route, "propose none");
   verb->add_option("--height-m", o->eye_height_m, "height of the robot's camera, metres")
       ->check(finite_and_positive)

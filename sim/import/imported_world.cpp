@@ -139,6 +139,22 @@ Eigen::Vector3d to_tenth_mm(const Eigen::Vector3d& p) {
           std::round(p.z() * 1e4) / 1e4};
 }
 
+/// Makes a segment that leans by at most so much upright, unless it would leave the surfaces at
+/// which it lies: those stay as they are, and hide what is behind them. Returns whether it did.
+bool put_upright(double most_deg, Segment& segment) {
+  // Less than VisibilityOptions::surface_gap_m, 1 mm, by the rounding of both to 0.1 mm.
+  constexpr double most_m = 8e-4;
+  const double lean_deg = lean_rad(segment.first, segment.second) * 180 / std::numbers::pi;
+  if (lean_deg == 0 || lean_deg > most_deg) return false;
+  auto [a, b] = segment;
+  make_upright(a, b);
+  a = to_tenth_mm(a);
+  b = to_tenth_mm(b);
+  if ((a - segment.first).norm() > most_m || (b - segment.second).norm() > most_m) return false;
+  segment = {a, b};
+  return true;
+}
+
 }  // namespace
 
 ImportedWorld import_world(const Mesh& mesh,
@@ -171,7 +187,8 @@ ImportedWorld import_world(const Mesh& mesh,
   CreaseOptions crease;
   crease.crease_rad = options.crease_deg * std::numbers::pi / 180;
   crease.rounding_m = rounding_m(building);
-  if (const std::optional<Eigen::Vector3d> up = leaning_up(building)) {
+  const bool may_lean = !options.is_level && !options.floor_m;
+  if (const auto up = may_lean ? leaning_up(building) : std::nullopt) {
     report.levelled_deg = lean_rad(Eigen::Vector3d::Zero(), *up) * 180 / std::numbers::pi;
     building = levelled(std::move(building), *up);
   }
@@ -207,15 +224,10 @@ ImportedWorld import_world(const Mesh& mesh,
     if (part.empty() || surface_error(part)) continue;
     features.surfaces_m.push_back(std::move(part));
   }
-  features.corners_m = corners_of(features.segments_m);
-  for (auto& [a, b] : features.segments_m) {
-    const double lean_deg = lean_rad(a, b) * 180 / std::numbers::pi;
-    if (lean_deg == 0 || lean_deg > options.upright_deg) continue;
-    make_upright(a, b);
-    a = to_tenth_mm(a);
-    b = to_tenth_mm(b);
-    ++report.made_upright;
+  for (Segment& segment : features.segments_m) {
+    report.made_upright += put_upright(options.upright_deg, segment);
   }
+  features.corners_m = corners_of(features.segments_m);
   if (features.segments_m.empty()) {
     throw Error(place,
                 fmt::format("has no edges of at least {:g} m in the storey (floor at {:g} m)",

@@ -22,7 +22,8 @@ struct ImportOptions {
   std::optional<double> top_m;    ///< how high above the floor the world ends
   double crease_deg = 20;         ///< surfaces that meet at a smaller angle make no edge
   double shortest_m = 0.1;        ///< shorter edges are left out
-  double upright_deg = 0.3;       ///< edges that lean by less become exactly upright; 0: none
+  double upright_deg = 0.3;       ///< edges that lean by at most this become upright; 0: none
+  bool is_level = false;          ///< known to stand level, so that it is not levelled
 };
 
 struct ImportReport {
@@ -47,10 +48,11 @@ struct ImportedWorld {
 
 /// A world of one storey of a building: its edges (crease_edges), the corners where they meet, its
 /// surfaces (convex_faces), with the floor at z = 0. A building that leans (leaning_up) is
-/// levelled, and edges that are nearly upright become so, which the world's ceiling goes by. The
-/// plan keeps its coordinates unless they are more than 1 km from the origin. All features are
-/// loose ones. Throws Error(place) where nothing is left, for too many triangles, coordinates that
-/// are not finite, and as axes_and_unit() does.
+/// levelled unless it is known to stand level or a height of its floor is given; and edges that are
+/// nearly upright become so, which the world's ceiling goes by, if no end leaves its surfaces by it
+/// (VisibilityOptions::surface_gap_m). The plan keeps its coordinates unless they are more than 1
+/// km from the origin. All features are loose ones. Throws Error(place) where nothing is left, for
+/// too many triangles, coordinates that are not finite, and as axes_and_unit() does.
 ImportedWorld import_world(const Mesh& mesh,
                            const ImportOptions& options,
                            const std::string& place);

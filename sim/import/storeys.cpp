@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 
 #include "sim/import/mesh.h"
@@ -92,12 +93,17 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
     }
     storeys.push_back(storey);
   }
-  // Where a building has floors, walls that begin without one are gables and parapets.
-  const bool has_floors = std::any_of(storeys.begin(), storeys.end(),
-                                      [](const Storey& storey) { return storey.has_floor; });
+  // Walls that begin without a floor above the highest floor are gables and parapets; below it they
+  // are those of a storey without a slab.
+  double highest_floor = -std::numeric_limits<double>::infinity();
+  for (const Storey& storey : storeys) {
+    if (storey.has_floor) highest_floor = std::max(highest_floor, storey.height);
+  }
   std::vector<double> heights;
   for (const Storey& storey : storeys) {
-    if (storey.has_floor || !has_floors) heights.push_back(storey.height);
+    if (storey.height <= highest_floor || !std::isfinite(highest_floor)) {
+      heights.push_back(storey.height);
+    }
   }
   std::sort(heights.begin(), heights.end());
   return heights;

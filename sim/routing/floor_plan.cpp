@@ -83,25 +83,27 @@ void FloorPlan::choose_inside(const World& world) {
   for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && !outside[i];
   leave_out_holes(world, indoors);
   const ClosedBodies bodies(world);
-  if (take_largest(indoors, bodies)) return;
+  if (take_largest(indoors, outside, bodies)) return;
   const std::vector<bool> floored = over_floor(world);
   std::vector<bool> open(count);
   for (std::size_t i = 0; i < count; ++i) open[i] = free_[i] && floored[i];
-  is_open_ = true;
-  if (take_largest(open, bodies)) {
+  const ClosedBodies none(World{});
+  is_open_ = take_largest(open, outside, bodies);
+  if (!is_open_ && take_largest(indoors, outside, none)) return;
+  if (is_open_ || take_largest(open, outside, none)) {
+    is_open_ = true;
     gap_m_ = gap_into_inside();
     return;
   }
-  is_open_ = false;
-  const ClosedBodies none(World{});
-  if (take_largest(indoors, none) || take_largest(open, none)) return;
   is_open_ = true;
   inside_ = largest_part(free_);
 }
 
 /// Makes the largest connected part of the cells that is no inside of a body the inside, if it is
 /// as large as a room, and adds up the others.
-bool FloorPlan::take_largest(const std::vector<bool>& cells, const ClosedBodies& bodies) {
+bool FloorPlan::take_largest(const std::vector<bool>& cells,
+                             const std::vector<bool>& outside,
+                             const ClosedBodies& bodies) {
   constexpr double least_m2 = 4;            // a room
   constexpr double least_other_m2 = 1;      // more than what is left behind a table
   constexpr float least_other_m = 0.3f;     // half as wide, unlike the inside of a wall
@@ -113,7 +115,8 @@ bool FloorPlan::take_largest(const std::vector<bool>& cells, const ClosedBodies&
   for (std::size_t n = 0; n < std::min(parts.size(), most_others); ++n) {
     const double size_m2 = cell_m2 * static_cast<double>(parts[n].size());
     if (size_m2 < (is_found ? least_other_m2 : least_m2)) break;
-    if (is_in_body(parts[n], bodies)) continue;
+    // A room of walls without thickness looks like a solid body from within, but for its door.
+    if (!has_way_out(parts[n], cells, outside) && is_in_body(parts[n], bodies)) continue;
     if (is_found) {
       const bool is_wide = std::any_of(parts[n].begin(), parts[n].end(), [&](std::size_t i) {
         return clearances[i] >= least_other_m;
@@ -126,6 +129,20 @@ bool FloorPlan::take_largest(const std::vector<bool>& cells, const ClosedBodies&
     for (const std::size_t i : parts[n]) inside_[i] = true;
   }
   return is_found;
+}
+
+bool FloorPlan::has_way_out(const std::vector<std::size_t>& part,
+                            const std::vector<bool>& cells,
+                            const std::vector<bool>& outside) const {
+  const auto width = static_cast<std::size_t>(width_);
+  return std::any_of(part.begin(), part.end(), [&](std::size_t i) {
+    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    return std::any_of(four_sides.begin(), four_sides.end(), [&](const auto& step) {
+      if (!has(x + step.first, y + step.second)) return false;
+      const std::size_t next = index(x + step.first, y + step.second);
+      return free_[next] && outside[next] && !cells[next];
+    });
+  });
 }
 
 /// Whether most of 20 cells of a part, evenly chosen, lie inside of bodies at the robot's height.

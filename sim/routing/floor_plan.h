@@ -34,7 +34,8 @@ class FloorPlan {
 
   /// Whether the cell belongs to the largest part of the floor that is inside: free, and not
   /// connected with the surroundings of the world through gaps wider than 2 m, so that outer doors
-  /// may stand open, not over a hole in a floor that most of it has, and not inside a closed body;
+  /// may stand open, not over a hole in a floor that most of it has, and not inside a closed body,
+  /// which has no way out;
   /// in a world without walls around, free and over a floor, or just free.
   bool inside(int x, int y) const { return inside_[index(x, y)]; }
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
@@ -50,7 +51,13 @@ class FloorPlan {
 
  private:
   void choose_inside(const World& world);
-  bool take_largest(const std::vector<bool>& cells, const ClosedBodies& bodies);
+  bool take_largest(const std::vector<bool>& cells,
+                    const std::vector<bool>& outside,
+                    const ClosedBodies& bodies);
+  /// Whether a part of the cells borders on free floor of the surroundings that is none of them.
+  bool has_way_out(const std::vector<std::size_t>& part,
+                   const std::vector<bool>& cells,
+                   const std::vector<bool>& outside) const;
   bool is_in_body(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const;
   double gap_into_inside() const;
   void block_below(const World& world, double top_m);

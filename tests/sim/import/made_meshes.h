@@ -66,4 +66,27 @@ inline Mesh house(double floor_z = 0, bool with_floor = true) {
   return mesh;
 }
 
+/// Two storeys of the house and their slabs.
+inline Mesh two_storeys() {
+  Mesh mesh = house();
+  const Mesh upper = house(3, false);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+  for (const auto& [a, b, c] : upper.triangles) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  add_box(mesh, {-0.1, -0.1, 2.7}, {8.2, 3.1, 3});
+  return mesh;
+}
+
+/// As a file holds it with this axis up and this unit.
+inline Mesh turned_and_scaled(Mesh mesh, int up, double unit_m) {
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    if (up == 1) v = Eigen::Vector3d(v.x(), v.z(), -v.y());
+    if (up == 0) v = Eigen::Vector3d(v.z(), v.y(), -v.x());
+    v /= unit_m;
+  }
+  return mesh;
+}
+
 }  // namespace vernier::sim::internal::test

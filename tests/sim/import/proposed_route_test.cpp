@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/routing/route_proposal.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/import/imported_world.h"
+#include "sim/import/mesh.h"
+#include "sim/routing/floor_plan.h"
+#include "sim/study/free_floor.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "tests/sim/import/made_meshes.h"
+
+namespace vernier::sim::internal {
+namespace {
+
+using test::add_box;
+using test::add_rectangle;
+
+// Property: the route leads through both rooms, where a robot can stand, and each leg begins where
+// a robot gets to from the first.
+TEST(ProposedRoute, LeadsThroughAllRooms) {
+  WorldDescription description = import_world(test::house(), {}, "m.obj").world;
+  const RouteProposal proposal = propose_route(FloorPlan(build_world(description), 1.2));
+  ASSERT_FALSE(proposal.route.empty());
+  EXPECT_GT(proposal.near_m2, 0.85 * proposal.floor_m2);
+  EXPECT_NEAR(proposal.floor_m2, 8 * 2.7, 4);  // the robot keeps away from walls
+  description.route = {proposal.route[0]};
+  const World world = build_world(description);
+  const Visibility visibility(world);
+  const FreeFloor floor(visibility, 1.2);
+  bool left = false, right = false;
+  const double length = route_length_m(proposal.route);
+  for (double s = 0; s < length; s += 0.1) {
+    const auto pose = route_point(proposal.route, s).pose;
+    EXPECT_TRUE(floor.reaches({pose.x_m, pose.y_m})) << pose.x_m << ' ' << pose.y_m;
+    EXPECT_TRUE(pose.x_m > 0 && pose.x_m < 8.2) << "it leaves the house by its open door";
+    left = left || pose.x_m < 2;
+    right = right || pose.x_m > 6;
+  }
+  EXPECT_TRUE(left && right);
+}
+
+// A stairwell in a floor, and a roof too low to stand below, are no ways.
+TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
+  Mesh mesh;
+  const auto wall = [&](double x0, double y0, double x1, double y1) {
+    add_box(mesh, {x0, y0, 0}, {x1, y1, 2.6});
+  };
+  wall(-0.1, -0.1, 12.1, 0);
+  wall(-0.1, 8, 12.1, 8.1);
+  wall(-0.1, 0, 0, 8);
+  wall(12, 0, 12.1, 8);
+  add_rectangle(mesh, {0, 0, 0}, {12, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 5, 0}, {12, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 3, 0}, {4, 0, 0}, {0, 2, 0});
+  add_rectangle(mesh, {7, 3, 0}, {5, 0, 0}, {0, 2, 0});
+  add_rectangle(mesh, {9, 0, 0.8}, {3, 0, 0.4}, {0, 8, 0});  // a slope under which no robot fits
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const World world = build_world(import_world(mesh, options, "m.obj").world);
+  const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
+  ASSERT_GT(route_length_m(proposal.route), 8);
+  for (double s = 0; s < route_length_m(proposal.route); s += 0.1) {
+    const auto pose = route_point(proposal.route, s).pose;
+    EXPECT_FALSE(pose.x_m > 4.4 && pose.x_m < 6.6 && pose.y_m > 3.4 && pose.y_m < 4.6);
+    EXPECT_LT(pose.x_m, 9.1);
+  }
+  EXPECT_TRUE(propose_route(FloorPlan(world, 1.2)).route.size() > 0);
+}
+
+/// A plot of 30 x 20 m with two houses that are solid blocks; `has_ground_below` if the ground goes
+/// on below them. A fence 1.8 m high with a gate of this width; none for a width below 0.
+World plot(bool has_ground_below, double gate_m) {
+  Mesh mesh;
+  if (has_ground_below) {
+    add_box(mesh, {0, 0, -0.2}, {30, 20, 0});
+  } else {
+    add_rectangle(mesh, {0, 0, 0}, {30, 0, 0}, {0, 4, 0});
+    add_rectangle(mesh, {0, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {13, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {26, 4, 0}, {4, 0, 0}, {0, 9, 0});
+    add_rectangle(mesh, {0, 13, 0}, {30, 0, 0}, {0, 7, 0});
+  }
+  add_box(mesh, {4, 4, 0}, {13, 13, 5});
+  add_box(mesh, {17, 4, 0}, {26, 13, 6});
+  if (gate_m >= 0) {
+    add_box(mesh, {0, 0, 0}, {12, 0.1, 1.8});
+    add_box(mesh, {12 + gate_m, 0, 0}, {30, 0.1, 1.8});
+    add_box(mesh, {0, 19.9, 0}, {30, 20, 1.8});
+    add_box(mesh, {0, 0.1, 0}, {0.1, 19.9, 1.8});
+    add_box(mesh, {29.9, 0.1, 0}, {30, 19.9, 1.8});
+  }
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  return build_world(import_world(mesh, options, "m.obj").world);
+}
+
+// Property: on a plot the route is in the yard, never inside of a solid house, and its openness is
+// told.
+TEST(ProposedRoute, KeepsOutOfSolidBodies) {
+  for (const bool has_ground_below : {false, true}) {
+    for (const double gate_m : {-1.0, 0.0, 1.5, 3.2}) {
+      const World world = plot(has_ground_below, gate_m);
+      const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
+      ASSERT_GT(route_length_m(proposal.route), 60) << has_ground_below << ' ' << gate_m;
+      for (double s = 0; s < route_length_m(proposal.route); s += 0.2) {
+        const auto pose = route_point(proposal.route, s).pose;
+        EXPECT_FALSE(pose.y_m > 4 && pose.y_m < 13 && pose.x_m > 4 && pose.x_m < 26 &&
+                     !(pose.x_m > 13 && pose.x_m < 17));
+      }
+      EXPECT_NEAR(proposal.floor_m2, 600 - 162, 60);
+      EXPECT_EQ(proposal.other_m2, 0);
+      EXPECT_EQ(proposal.is_open, gate_m < 0 || gate_m > 2);
+      EXPECT_NEAR(proposal.gap_m, gate_m > 2 ? gate_m : 0, 0.3);
+    }
+  }
+}
+
+// A room whose only surfaces face outwards is a room if there is nothing else.
+TEST(ProposedRoute, IsInARoomWithoutThickness) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, 0}, {8, 6, 2.6});
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, {}, "m.obj").world), 1.2));
+  EXPECT_GT(route_length_m(proposal.route), 3);
+  EXPECT_NEAR(proposal.floor_m2, 48 - 4, 3);
+  EXPECT_FALSE(proposal.is_open);
+}
+
+/// A house of 8 x 6 m of walls that are single sheets and face outwards, with a door or gap of this
+/// width, on ground that goes on by 10 m.
+Mesh house_of_sheets(double door_m) {
+  Mesh mesh;
+  add_rectangle(mesh, {-10, -10, 0}, {28, 0, 0}, {0, 26, 0});
+  add_rectangle(mesh, {0, 0, 0}, {3, 0, 0}, {0, 0, 2.6});
+  add_rectangle(mesh, {3 + door_m, 0, 0}, {5 - door_m, 0, 0}, {0, 0, 2.6});
+  add_rectangle(mesh, {0, 6, 0}, {0, 0, 2.6}, {8, 0, 0});
+  add_rectangle(mesh, {0, 0, 0}, {0, 0, 2.6}, {0, 6, 0});
+  add_rectangle(mesh, {8, 0, 0}, {0, 6, 0}, {0, 0, 2.6});
+  add_rectangle(mesh, {0, 0, 2.6}, {8, 0, 0}, {0, 6, 0});
+  return mesh;
+}
+
+// What has a door is no solid body, though its walls look like the outside of one.
+TEST(ProposedRoute, IsInAHouseOfSheetsWithADoor) {
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const RouteProposal proposal = propose_route(
+      FloorPlan(build_world(import_world(house_of_sheets(0.9), options, "m.obj").world), 1.2));
+  EXPECT_FALSE(proposal.is_open);
+  EXPECT_NEAR(proposal.floor_m2, 48 - 4, 4);
+}
+
+// Without ground around, the floor of a house of sheets with a gap of 3 m is all there is: its gap
+// is told.
+TEST(ProposedRoute, SaysHowARoomWithoutThicknessIsOpen) {
+  Mesh mesh = house_of_sheets(3);
+  for (int i = 0; i < 4; ++i) {
+    mesh.vertices[i] = Eigen::Vector3d(i == 1 || i == 2 ? 8 : 0, i < 2 ? 0 : 6, 0);
+  }
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, options, "m.obj").world), 1.2));
+  EXPECT_TRUE(proposal.is_open);
+  EXPECT_NEAR(proposal.gap_m, 3, 0.3);
+}
+
+TEST(ProposedRoute, SaysWhatIsCutOff) {
+  Mesh mesh = test::house();
+  add_box(mesh, {4.02, 1, 0}, {4.06, 2, 2.1});  // its inner door, closed
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, {}, "m.obj").world), 1.2));
+  EXPECT_NEAR(proposal.floor_m2, 4 * 2.7, 1.5);
+  EXPECT_NEAR(proposal.other_m2, 4 * 2.7, 1.5);
+  EXPECT_EQ(
+      propose_route(FloorPlan(build_world(import_world(test::house(), {}, "m.obj").world), 1.2))
+          .other_m2,
+      0);
+}
+
+TEST(ProposedRoute, IsEmptyWithoutFloor) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, 0}, {0.3, 0.3, 2.5});
+  add_rectangle(mesh, {0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0});
+  ImportOptions options;
+  options.unit_m = 1;
+  options.up_axis = 2;
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, options, "m.obj").world), 1.2));
+  EXPECT_LT(proposal.near_m2, 40);  // around the box at most
+}
+
+}  // namespace
+}  // namespace vernier::sim::internal

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/import/storeys.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/import/axes_and_unit.h"
+#include "sim/import/convex_faces.h"
+#include "sim/import/even_storeys.h"
+#include "sim/import/mesh.h"
+#include "tests/sim/import/made_meshes.h"
+#include "tests/support/error_message.h"
+
+namespace vernier::sim::internal {
+namespace {
+
+using test::add_box;
+using test::add_rectangle;
+using test::turned_and_scaled;
+using test::two_storeys;
+using vernier::test::error_message;
+
+TEST(Storeys, AreWhereWallsBegin) {
+  const std::vector<double> floors = floor_heights_m(convex_faces(welded(two_storeys(), 5e-4)));
+  ASSERT_EQ(floors.size(), 2u);
+  EXPECT_NEAR(floors[0], 0, 1e-9);
+  EXPECT_NEAR(floors[1], 3, 1e-9);
+  // Furniture is no storey, and a building without a floor has one.
+  Mesh furnished = test::house(0, false);
+  for (int i = 0; i < 3; ++i) add_box(furnished, {1.0 + i, 1, 0.7}, {1.8 + i, 2, 0.75});
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(furnished, 5e-4))).size(), 1u);
+}
+
+// A gable stands on walls, not on a floor.
+TEST(Storeys, AreNotGables) {
+  Mesh mesh = test::house();
+  const auto add = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                       const Eigen::Vector3d& c) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (const double x : {-0.1, 8.2}) add({x, -0.1, 2.5}, {x, 3.1, 2.5}, {x, 1.5, 4.5});
+  add_rectangle(mesh, {-0.1, -0.1, 2.5}, {8.3, 0, 0}, {0, 1.6, 2});
+  add_rectangle(mesh, {-0.1, 3.1, 2.5}, {8.3, 0, 0}, {0, -1.6, 2});
+  for (double x = 0.5; x < 8; x += 0.5) add({x, -0.1, 2.5}, {x, 3.1, 2.5}, {x, 1.5, 4.5});
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(mesh, 5e-4))).size(), 1u);
+  // With a floor below it, it is an attic.
+  add_rectangle(mesh, {-0.1, -0.1, 2.5}, {8.3, 0, 0}, {0, 3.2, 0});
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(mesh, 5e-4))).size(), 2u);
+}
+
+// Walls below a floor are of a storey, also where the ground has no slab.
+TEST(Storeys, MayLackASlabAtTheGround) {
+  Mesh mesh = test::house(0, false);
+  const Mesh upper = test::house(3);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+  for (const auto& [a, b, c] : upper.triangles) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  const std::vector<double> floors = floor_heights_m(convex_faces(welded(mesh, 5e-4)));
+  ASSERT_EQ(floors.size(), 2u);
+  EXPECT_NEAR(floors[0], 0, 1e-9);
+  EXPECT_NEAR(floors[1], 3, 1e-9);
+}
+
+// The outer faces of a house go down to its footing; its rooms do not.
+TEST(Storeys, BeginWhereMostWallsDoAndNotAtThePlinth) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, -1}, {10, 8, 2.7});
+  for (const double x : {0.3, 3.5, 6.7}) {
+    for (const double y : {0.3, 4.2}) add_box(mesh, {x, y, 0}, {x + 3, y + 3.5, 2.6});
+  }
+  const std::vector<double> floors = floor_heights_m(convex_faces(welded(mesh, 5e-4)));
+  ASSERT_EQ(floors.size(), 1u);
+  EXPECT_NEAR(floors[0], 0, 0.05);
+}
+
+TEST(AxesAndUnit, AreRecognised) {
+  for (const int up : {0, 1, 2}) {
+    for (const double unit : {1.0, 0.001}) {
+      const Mesh mesh = turned_and_scaled(test::house(), up, unit);
+      const AxesAndUnit axes = axes_and_unit(mesh, {}, {}, "m.obj");
+      EXPECT_EQ(axes.up_axis, up);
+      EXPECT_EQ(axes.unit_m, unit);
+      Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+      for (const Eigen::Vector3d& v : upright(mesh, axes).vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+      }
+      EXPECT_NEAR(high.z() - low.z(), 2.5, 1e-9);
+      EXPECT_NEAR(low.z(), 0, 1e-9);
+    }
+  }
+}
+
+/// Storeys of 16 x 11 m: a corridor between rows of rooms, slabs, and doors in the walls.
+Mesh block_of_offices(int storeys, double storey_m) {
+  Mesh mesh;
+  add_box(mesh, {-0.2, -0.2, -0.2}, {16.2, 11.2, 0});
+  for (int i = 0; i < storeys; ++i) {
+    const double low = i * storey_m, high = low + storey_m - 0.25;
+    const auto wall = [&](double x0, double y0, double x1, double y1) {
+      add_box(mesh, {x0, y0, low}, {x1, y1, high});
+    };
+    wall(-0.2, -0.2, 16.2, 0);
+    wall(-0.2, 11, 16.2, 11.2);
+    wall(-0.2, 0, 0, 11);
+    wall(16, 0, 16.2, 11);
+    for (const double y : {4.6, 6.4}) {
+      for (int k = 0; k < 4; ++k) wall(4.0 * k, y, 4.0 * k + 3, y + 0.1);
+    }
+    for (int k = 1; k < 4; ++k) {
+      wall(4.0 * k - 0.1, 0, 4.0 * k, 4.6);
+      wall(4.0 * k - 0.1, 6.5, 4.0 * k, 11);
+    }
+    add_box(mesh, {-0.2, -0.2, high}, {16.2, 11.2, high + 0.25});
+  }
+  return mesh;
+}
+
+// Property: a building of several storeys stands upright, and its unit is that of its storeys, not
+// of its height.
+TEST(AxesAndUnit, OfSeveralStoreysAreRecognised) {
+  for (const auto& [storeys, storey_m] :
+       {std::pair(2, 3.0), std::pair(3, 2.9), std::pair(4, 3.4), std::pair(7, 3.1)}) {
+    for (const int up : {0, 1, 2}) {
+      for (const double unit : {1.0, 0.01, 0.001, 0.3048}) {
+        const Mesh mesh = turned_and_scaled(block_of_offices(storeys, storey_m), up, unit);
+        if (storeys == 2 && (unit == 0.3048 || unit == 0.01)) {  // or one of 20 m, or in inches
+          EXPECT_NE(
+              error_message([&] { axes_and_unit(mesh, {}, {}, "m.obj"); }).find("which may be "),
+              std::string::npos);
+          continue;
+        }
+        const AxesAndUnit axes = axes_and_unit(mesh, {}, {}, "m.obj");
+        EXPECT_EQ(axes.up_axis, up) << storeys;
+        EXPECT_EQ(axes.unit_m, unit) << storeys;
+      }
+    }
+  }
+}
+
+// A hall of 10 m is one of 3 m if its unit is a foot, and so of inches and centimetres.
+TEST(AxesAndUnit, OfAHighHallAreAskedFor) {
+  Mesh hall;
+  add_box(hall, {0, 0, 0}, {60, 30, 10});
+  const auto said = [&](double unit_m) {
+    return error_message(
+        [&] { axes_and_unit(turned_and_scaled(hall, 2, unit_m), 2, {}, "m.obj"); });
+  };
+  EXPECT_EQ(said(1),
+            "m.obj: does not say its unit of length, which may be m (60 m long, 10 m high) or ft "
+            "(18.3 m long, 3.05 m high); say which with --unit");
+  EXPECT_NE(said(0.0254).find("may be cm (23.6 m long, 3.94 m high) or in ("), std::string::npos);
+  EXPECT_NE(said(0.3048).find("may be m ("), std::string::npos);
+  EXPECT_EQ(axes_and_unit(turned_and_scaled(hall, 2, 0.001), 2, {}, "m.obj").unit_m, 0.001);
+  EXPECT_EQ(axes_and_unit(turned_and_scaled(hall, 2, 0.01), 2, {}, "m.obj").unit_m, 0.01);
+}
+
+TEST(EvenStoreys, AreCountedAndMeasured) {
+  const Mesh mesh = block_of_offices(4, 3.4);
+  const auto storeys = even_storeys(mesh, 2);
+  ASSERT_TRUE(storeys);
+  EXPECT_EQ(storeys->count, 4);
+  EXPECT_NEAR(storeys->height, 3.4, 0.02);
+  EXPECT_FALSE(even_storeys(block_of_offices(1, 3), 2));
+  // Rooms in a row are no tower on its side.
+  EXPECT_FALSE(even_storeys(block_of_offices(1, 3), 0));
+}
+
+// A corridor that is narrower than it is high looks like a low one that lies on its side.
+TEST(AxesAndUnit, OfACorridorAreAskedFor) {
+  for (const auto& [width, height] :
+       {std::pair(1.5, 2.6), std::pair(2.2, 2.6), std::pair(2.6, 2.4), std::pair(4.0, 6.0)}) {
+    Mesh corridor;
+    add_box(corridor, {0, 0, 0}, {40, width, height});
+    for (int door = 0; door < 20; ++door) {
+      add_box(corridor, {1 + 1.9 * door, 0, 0}, {1.9 + 1.9 * door, 0.05, 2.1});
+    }
+    for (const int up : {0, 1, 2}) {
+      const Mesh mesh = turned_and_scaled(corridor, up, 1);
+      EXPECT_NE(error_message([&] {
+                  axes_and_unit(mesh, {}, {}, "m.obj");
+                }).find("does not say which axis is up"),
+                std::string::npos)
+          << width << " x " << height << ", up " << up;
+      EXPECT_EQ(axes_and_unit(mesh, up, 1, "m.obj").up_axis, up);
+    }
+  }
+}
+
+TEST(AxesAndUnit, AreAskedForWhereTheyAreNotClear) {
+  Mesh cube;
+  add_box(cube, {0, 0, 0}, {5, 5, 5});
+  EXPECT_EQ(error_message([&] { axes_and_unit(cube, {}, {}, "m.obj"); }),
+            "m.obj: does not say which axis is up, and its shape does not show it; say so with "
+            "--up x, y or z");
+  Mesh hall;
+  add_box(hall, {0, 0, 0}, {60, 40, 8});
+  EXPECT_NE(error_message([&] { axes_and_unit(hall, {}, {}, "m.obj"); }).find("which may be m ("),
+            std::string::npos);
+  Mesh dust;
+  add_box(dust, {0, 0, 0}, {1e-5, 1e-5, 2e-6});
+  EXPECT_NE(error_message([&] { axes_and_unit(dust, {}, {}, "m.obj"); }).find("it is no building"),
+            std::string::npos);
+  // What is given is not questioned.
+  EXPECT_EQ(axes_and_unit(cube, 1, 0.0254, "m.obj").unit_m, 0.0254);
+}
+
+}  // namespace
+}  // namespace vernier::sim::internal

@@ -208,15 +208,14 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   std::array<Heights, 3> whole, folded;
-  std::optional<int>
-      tower;  // an axis with more even storeys than rows of rooms have walls by chance
+  std::vector<int> towers;  // axes with more even storeys than rows of rooms have walls by chance
   std::array<bool, 3> pairs{};  // two storeys only, which is found by chance too
   constexpr int many = 4;
   for (int axis = 0; axis < 3; ++axis) {
     whole[axis] = folded[axis] = {low[axis], size[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
     if (storeys) folded[axis] = {storeys->first, storeys->height, true};
-    if (storeys && storeys->count >= many) tower = axis;
+    if (storeys && storeys->count >= many) towers.push_back(axis);
     pairs[axis] = storeys && storeys->count == 2;
   }
   std::optional<int> up = voted_axis(mesh, folded);
@@ -227,7 +226,8 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
     const std::optional<int> by_whole = voted_axis(mesh, whole);
     const bool is_lowest = by_whole && clear_winner(by_size, 1.2) == by_whole;
     if (!is_chance || (by_whole && by_whole != up)) {
-      up = is_lowest && tower.value_or(*by_whole) == *by_whole ? by_whole : std::nullopt;
+      const bool is_tower = towers.empty() || towers == std::vector<int>{by_whole.value_or(-1)};
+      up = is_lowest && is_tower ? by_whole : std::nullopt;
     }
   }
   if (up && !may_lie(size, *up)) return *up;

@@ -23,6 +23,15 @@ constexpr double most_slender_of_many = 4.5;
 constexpr int many = 5;  // storeys
 constexpr std::size_t most_levels = 200;
 
+// What lies below and above a row of levels, in storeys.
+constexpr double most_below = 2;         // a cellar, or a ground floor that is higher
+constexpr double most_above = 2;         // the last storey and a flat roof
+constexpr double most_roof = 3.5;        // the last storey and a steep roof, above four levels
+constexpr double most_plinth = 0.4;      // below two levels
+constexpr double least_upper = 0.85;     // above two levels: a storey like the lower
+constexpr double most_upper = 1.4;       // with a parapet
+constexpr double least_of_storey = 0.6;  // else the last level is the roof
+
 struct Level {
   double height, area;
 };
@@ -111,9 +120,10 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
       // upper storey must be as high.
       const double below = (row.first - low[axis]) / row.storey;
       const double above = (high[axis] - row.last) / row.storey;
-      const bool is_row = row.floors > 2 ? below < 2 && above < (row.floors > 3 ? 3.5 : 2)
-                                         : below < 0.4 && above > 0.85 && above < 1.4;
-      const int count = row.floors - (above < 0.6 ? 1 : 0);
+      const bool is_row =
+          row.floors > 2 ? below < most_below && above < (row.floors > 3 ? most_roof : most_above)
+                         : below < most_plinth && above > least_upper && above < most_upper;
+      const int count = row.floors - (above < least_of_storey ? 1 : 0);
       const bool is_slender = slender > (count < many ? most_slender : most_slender_of_many);
       if (!is_row || count < 2 || is_slender || row.area <= most) continue;
       most = row.area;

@@ -27,11 +27,12 @@ std::string open_floor_text(const RouteProposal& proposal) {
   if (proposal.gap_m == 0) {
     return fmt::format(
         "no floor is enclosed by walls without gaps of {:g} m and more; the route "
-        "is on open floor",
+        "is on open floor; if it should be in a room, close its gaps, or give [[route]] points_m",
         widest_m);
   }
   return fmt::format(
-      "the floor of the route is open to the surroundings by a gap of about {:.1f} m",
+      "the floor of the route is open to the surroundings by a gap of about {:.1f} m; if "
+      "the route should not lead there, close the gap, or give [[route]] points_m",
       proposal.gap_m);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/mesh_files/ifc_unit.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -28,24 +29,31 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(ifc_blanks) + 1 - begin);
 }
 
-/// A statement without the comments before it.
-std::string_view without_comments(std::string_view statement) {
-  statement = trimmed(statement);
-  while (statement.starts_with("/*")) {
-    const std::size_t end = statement.find("*/");
-    statement = end == std::string_view::npos ? "" : trimmed(statement.substr(end + 2));
+/// The text with blanks in place of its comments.
+std::string without_comments(std::string_view text) {
+  std::string plain(text);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    std::size_t end = i;
+    if (plain[i] == '\'') {
+      end = plain.find('\'', i + 1);  // a quote in a string is doubled: two strings, to this end
+    } else if (plain.compare(i, 2, "/*") == 0) {
+      const std::size_t last = plain.find("*/", i + 2);
+      end = last == std::string::npos ? plain.size() : last + 1;
+      std::fill(plain.begin() + static_cast<std::ptrdiff_t>(i),
+                plain.begin() + static_cast<std::ptrdiff_t>(std::min(end + 1, plain.size())), ' ');
+    }
+    if (end == std::string::npos) break;
+    i = end;
   }
-  return statement;
+  return plain;
 }
 
-/// Calls visit(position) for the bytes of a text that stand in no string and no comment.
+/// Calls visit(position) for the bytes of a text without comments that stand in no string.
 template <class Visit>
 void visit_code(std::string_view text, Visit visit) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\'') {
-      i = text.find('\'', i + 1);  // a quote in a string is doubled: two strings, to this end
-    } else if (text.substr(i, 2) == "/*") {
-      i = text.find("*/", i + 2);
+      i = text.find('\'', i + 1);
     } else {
       visit(i);
     }
@@ -92,7 +100,7 @@ std::map<std::string_view, Entity> entities_of_units(std::string_view text) {
   std::size_t begin = 0;
   visit_code(text, [&](std::size_t i) {
     if (text[i] != ';') return;
-    const std::string_view statement = without_comments(text.substr(begin, i - begin));
+    const std::string_view statement = trimmed(text.substr(begin, i - begin));
     begin = i + 1;
     const std::size_t equals = statement.find('=');
     const std::size_t open = statement.find('(');
@@ -120,12 +128,15 @@ class UnitReader {
     const Entity* assignment = assigned();
     if (assignment == nullptr || assignment->arguments.empty()) return {};
     std::optional<IfcLengthUnit> found;
+    std::string_view found_name;
     for (const std::string_view name : arguments_of(inside_parentheses(assignment->arguments[0]))) {
       const Entity* unit = entity(name);
       if (unit == nullptr || !is_of_length(*unit)) continue;
+      if (found && name == found_name) continue;
       if (found) {
         throw Error(place_, "assigns two units of length", "leave one in its IFCUNITASSIGNMENT");
       }
+      found_name = name;
       found = IfcLengthUnit{metres_of(name), unit->type == "ifcsiunit"};
     }
     return found;
@@ -203,7 +214,8 @@ class UnitReader {
 }  // namespace
 
 std::optional<IfcLengthUnit> ifc_length_unit(std::string_view text, const std::string& place) {
-  return UnitReader(entities_of_units(text), place).length_unit();
+  const std::string plain = without_comments(text);
+  return UnitReader(entities_of_units(plain), place).length_unit();
 }
 
 }  // namespace vernier::sim::internal

@@ -293,7 +293,7 @@ class PlyReader {
     }
   }
 
-  /// Faces as fans of triangles: whole if they are convex, else of convex pieces.
+  /// Faces as fans of triangles: of their convex pieces, of which a spike is none; whole without.
   void add_faces(Mesh& mesh) const {
     std::size_t first = 0;
     const auto add_fan = [&](const auto& corner, std::size_t count) {
@@ -310,9 +310,8 @@ class PlyReader {
       }
       std::vector<std::vector<int>> pieces;
       if (size > 3) pieces = convex_pieces(polygon);
-      if (pieces.size() < 2) add_fan(of_face, size);
-      for (std::size_t i = 0; pieces.size() > 1 && i < pieces.size(); ++i) {
-        const std::vector<int>& piece = pieces[i];
+      if (pieces.empty()) add_fan(of_face, size);
+      for (const std::vector<int>& piece : pieces) {
         add_fan([&](std::size_t k) { return of_face(static_cast<std::size_t>(piece[k])); },
                 piece.size());
       }

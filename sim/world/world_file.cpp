@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world_file.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -263,8 +264,13 @@ WorldDescription parse_world(const std::string& text, const std::string& place) 
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {
-  for (const char* ending : {".obj", ".ply", ".dae", ".ifc", ".gltf", ".glb", ".stl", ".fbx"}) {
-    if (file.extension() != ending) continue;
+  std::string written = file.extension().string();
+  std::transform(written.begin(), written.end(), written.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const char* ending : {".obj", ".ply", ".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb",
+                             ".stl", ".fbx", ".3ds"}) {
+    if (written != ending) continue;
     throw Error(file.string(), "is a mesh, not a world file",
                 "import it first: vernier world import");
   }

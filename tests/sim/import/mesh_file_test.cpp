@@ -205,6 +205,9 @@ TEST(IfcUnit, IsReadFromTheAssignment) {
   EXPECT_EQ(metres("#1=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);#6=IFCUNITASSIGNMENT((#1));"),
             0.001);
   EXPECT_EQ(metres(metre + foot + "#6=IFCUNITASSIGNMENT((#8,#4));"), 0.3048);
+  EXPECT_EQ(metres(metre + foot + "#6=IFCUNITASSIGNMENT((#8,/* (ft; */ #4 /*)*/)) /* ) */;"),
+            0.3048);
+  EXPECT_EQ(metres(metre + "#6=IFCUNITASSIGNMENT((#1,#8,#1));"), 1);  // listed twice
   // An inch by millimetres, and a yard by feet.
   EXPECT_NEAR(metres("#1=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);"
                      "#2=IFCMEASUREWITHUNIT(IFCRATIOMEASURE(25.4),#1);"

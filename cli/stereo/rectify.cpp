@@ -18,6 +18,7 @@
 #include "calib/base/output_files.h"
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
@@ -294,6 +295,7 @@ void run(RectifyArguments options, Session& session) {
   std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
   inputs.insert(inputs.end(), {options.left, options.right});
   const Rig& rig = file.estimate.rig;
+  require_pair(rig, options.rig, options.rig);
   const RectifiedGeometry wanted =
       with_errors_of(options.rig, [&] { return rectified_geometry(rig, options.geometry); });
   const auto [left, right] =

@@ -9,6 +9,7 @@
 
 #include "calib/base/error_place.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "cli/program/camera_images.h"
@@ -46,6 +47,7 @@ void check(const StereoInputOptions& o) {
 
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Rig& rig = input.estimate->rig;
+  require_pair(rig, o.rig, o.rig);
   const RectifiedGeometry geometry = with_errors_of(o.rig, [&] { return rectified_geometry(rig); });
   const RectifiedPair raw = read_camera_images(rig, o.rig, o.left, o.right, session);
   RectifiedImages images = rectified_images(rig, geometry, raw.left, raw.right, o.threads);

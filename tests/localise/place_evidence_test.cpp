@@ -253,15 +253,12 @@ TEST(RecordedViews, TellWhetherPlacesAreEqual) {
 }
 
 // A place that was recorded more often explains all views better, and is no other place for that.
-// Where the true one is recorded twice and its equal eight times, scores alone are always wrong.
 TEST(RecordedViews, OfUnequalNumberSayNoMoreForThat) {
   constexpr int buildings = 60;
   constexpr Recordings many_first{8, 2}, few_first{2, 8};
   const double repeats = LocaliserOptions().repeats;
   EXPECT_LT(answers(true, repeats, buildings, many_first).all, buildings / 3);
-  const Answers by_scores = answers(true, 0, buildings, few_first);
-  EXPECT_EQ(by_scores.wrong, by_scores.all);
-  EXPECT_LT(2 * answers(true, repeats, buildings, few_first).wrong, by_scores.wrong);
+  EXPECT_GT(answers(true, 0, buildings, many_first).all, buildings / 2);
   EXPECT_GT(answers(false, repeats, buildings, many_first).all, buildings * 9 / 10);
   EXPECT_GT(answers(false, repeats, buildings, few_first).all, buildings * 9 / 10);
 }

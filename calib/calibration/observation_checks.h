@@ -29,8 +29,7 @@ struct ObservationDiagnosis {
 /// check_and_sort first. Throws Error, naming frame, camera and image, for
 ///
 ///  - corners that are not on a plane (rows and columns exchanged, wrong numbering): residual of
-///  the
-///    homography above half the spacing of corners, and more than 15 % of the corners off a
+///    the homography above half the spacing of corners, and more than 15 % of the corners off a
 ///    homography with their eight neighbours by a quarter of the spacing, since a wide lens bends
 ///    the board as a whole;
 ///  - some views mirrored relative to the others: determinant of the homography of opposite sign;

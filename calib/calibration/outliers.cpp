@@ -118,7 +118,8 @@ bool is_in_cluster(const std::vector<Eigen::Vector2d>& residuals,
                    const std::vector<bool>& out,
                    std::size_t i) {
   // Of the residual's length. A shift by a square differs by some per cent from corner to corner;
-  // noise, at most a sixth of the residual, adds to that.
+  // noise adds to that: residuals of six standard deviations differ by some 0.3 by it, so that near
+  // the limit a cluster is found in part only.
   constexpr double alike = 0.3, unlike = 0.7;
   const double length = residuals[i].norm();
   bool like_one_out = false;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -142,7 +143,7 @@ void require_pair(const Rig& rig,
   const std::size_t count = rig.cameras.size();
   if (count == 2) return;
   const std::string fault =
-      fmt::format("it needs a pair and the rig has {} camera{}", count, count == 1 ? "" : "s");
+      "it needs a pair and the rig has " + counted(static_cast<std::int64_t>(count), "camera");
   if (count < 2) throw Error(place, fault, or_else.empty() ? "give a rig of two cameras" : or_else);
   throw Error(place, fault,
               fmt::format("take two of them: vernier convert {} --cameras {},{} -o pair.json{}",

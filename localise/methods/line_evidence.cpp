@@ -35,7 +35,7 @@ LineLocaliser::JudgedPose& LineLocaliser::judged(const Pose2D& pose, Query& quer
   return judged;
 }
 
-/// What a view is at the best pose near one, by the map without one of its nodes. Nothing if the
+/// What a view says of the best pose near one, by the map without one of its nodes. Nothing if the
 /// map holds nothing else there.
 std::optional<PlaceEvidence> LineLocaliser::evidence_without(int left_out,
                                                              const ComparedView& view,
@@ -77,12 +77,11 @@ RecordedDifference LineLocaliser::recorded_difference(const Pose2D& here,
   for (const int node : nodes_of_place(here, query)) {
     const Pose2D& own = map_.nodes[node].pose;
     const Pose2D other = compose(there, relative(own, here));
-    const ComparedView view = compared_view(map_.nodes[node].view);
-    auto known = query.recorded.find(node);
-    if (known == query.recorded.end()) {
-      known = query.recorded.emplace(node, evidence_without(node, view, own, query)).first;
+    if (!query.recorded.contains(node)) {
+      const ComparedView seen = compared_view(map_.nodes[node].view);
+      query.recorded[node] = {seen, evidence_without(node, seen, own, query)};
     }
-    std::optional<PlaceEvidence>& at_own = known->second;
+    auto& [view, at_own] = query.recorded[node];
     auto at_other = evidence_without(grid_.nearest(other), view, other, query);
     if (!at_own || !at_other) continue;
     const PlaceDifference difference =

@@ -52,6 +52,7 @@ class LineLocaliser : public Localiser {
     Pose2D pose_in_node;
   };
   struct JudgedPose;
+  struct RecordedView;
   /// Memory and intermediate results of one query.
   struct Query;
 

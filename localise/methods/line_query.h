@@ -17,6 +17,7 @@
 #include "localise/verification/floor_plan_votes.h"
 #include "localise/verification/image_lines.h"
 #include "localise/verification/place_evidence.h"
+#include "localise/verification/view_agreement.h"
 
 namespace vernier::localise::internal {
 
@@ -60,6 +61,12 @@ struct LineLocaliser::JudgedPose {
   std::map<Pose2D, Evidence, PoseOrder> from;
 };
 
+/// A view that the map recorded, and what it says of where it was taken, by the map without it.
+struct LineLocaliser::RecordedView {
+  ComparedView view;
+  std::optional<PlaceEvidence> at_own;
+};
+
 /// Memory and intermediate results of one query.
 struct LineLocaliser::Query {
   std::vector<Seen> looks;
@@ -71,7 +78,7 @@ struct LineLocaliser::Query {
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
   std::map<Pose2D, JudgedPose, PoseOrder> judged;
-  std::map<int, std::optional<PlaceEvidence>> recorded;  // of nodes' views, by the map without them
+  std::map<int, RecordedView> recorded;  // of nodes, as they are needed
 };
 
 }  // namespace vernier::localise::internal

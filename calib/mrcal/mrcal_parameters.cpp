@@ -17,7 +17,7 @@ namespace vernier::internal {
 namespace {
 
 /// A free column, which moves the states `rows` by `by`.
-struct Column {
+struct StateColumn {
   std::vector<std::pair<int, double>> moves;
 };
 
@@ -25,7 +25,7 @@ void add_camera(const Rig& rig,
                 int camera,
                 int first_state,
                 const std::vector<bool>& held,
-                std::vector<Column>& columns) {
+                std::vector<StateColumn>& columns) {
   const int ours = intrinsics_index(rig, camera);
   const int count = parameter_count(rig.cameras[camera].model);
   const bool f_held = held[ours], ax_held = held[ours + 1];
@@ -45,7 +45,7 @@ void add_pose(const Rig& rig,
               int camera,
               int first_state,
               const std::vector<bool>& held,
-              std::vector<Column>& columns) {
+              std::vector<StateColumn>& columns) {
   const int ours = pose_index(rig, camera);
   for (int k = 0; k < 6; ++k) {
     if (!held[ours + k]) columns.push_back({{{first_state + k, 1}}});
@@ -115,7 +115,7 @@ MrcalLift mrcal_lift(const Rig& rig, const std::vector<bool>& given) {
   std::vector<bool> held = given;
   held.resize(parameter_count(rig), false);
   MrcalLift lift;
-  std::vector<Column> columns;
+  std::vector<StateColumn> columns;
   const int lens = mrcal_lens(rig).parameters;
   int state = 0;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {

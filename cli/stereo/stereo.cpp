@@ -79,13 +79,13 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
 }
 
 /// Number of edges to match and of edges matched.
-struct EdgeMetrics {
+struct EdgesMatched {
   int asked = 0, matched = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
 };
 
-EdgeMetrics edge_figures(const StereoResult& result, double min_angle_rad) {
-  EdgeMetrics f;
+EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
+  EdgesMatched f;
   for (std::size_t i = 0; i < result.edges.size(); ++i) {
     if (std::abs(result.edges[i].normal.x()) < std::sin(min_angle_rad)) continue;
     ++f.asked;
@@ -153,7 +153,7 @@ std::string sigma_words(const DepthFigures& f) {
 void check_result(const StereoArguments& options,
                   const StereoInput& input,
                   const StereoResult& result,
-                  const EdgeMetrics& edges,
+                  const EdgesMatched& edges,
                   const DepthFigures& depth,
                   Session& session) {
   const std::string of_map = doubt_about(result.map, input.range.max_px);
@@ -212,7 +212,7 @@ std::map<std::string, int> refusals(const StereoResult& result) {
 Json result_json(const StereoArguments& options,
                  const StereoInput& input,
                  const StereoResult& result,
-                 const EdgeMetrics& edges,
+                 const EdgesMatched& edges,
                  const DepthFigures& depth) {
   Json segments{{"found", result.segments.size()}};
   for (const auto& [key, count] : refusals(result)) segments[key] = count;
@@ -241,7 +241,7 @@ Json result_json(const StereoArguments& options,
 
 std::string result_text(const StereoInput& input,
                         const StereoResult& result,
-                        const EdgeMetrics& edges,
+                        const EdgesMatched& edges,
                         const DepthFigures& depth) {
   std::string text = fmt::format(
       "edges             {}, {} of them not along the row; {} matched ({:.1f} %), {} to {} px\n",
@@ -286,7 +286,7 @@ void run(const StereoArguments& options, Session& session) {
   check_outputs(options);
   const StereoInput input = read_stereo_input(options.input, session);
   const StereoResult result = look(options, input);
-  const EdgeMetrics edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
+  const EdgesMatched edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
   check_result(options, input, result, edges, depth, session);
 

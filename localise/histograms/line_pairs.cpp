@@ -8,11 +8,14 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/base/plane_vectors.h"
 #include "localise/histograms/pair_entry.h"
 #include "localise/histograms/smeared_ramp.h"
 #include "localise/pgh.h"
 
 namespace vernier::localise::internal {
+
+using vernier::internal::cross;
 
 namespace {
 
@@ -75,10 +78,6 @@ class PairBlur {
   const PghOptions& options_;
   double offset_a_ = 0, offset_b_ = 0;  // of the other's ends along the reference, from its middle
 };
-
-double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
 
 SmearedRamp ramp_between(double a, double b, double sigma) {
   return {std::min(a, b), std::max(a, b), sigma};

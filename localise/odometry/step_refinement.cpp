@@ -100,12 +100,12 @@ struct StepState {
   }
 };
 
-struct ReducedSystem {
+struct CornerSystem {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
   std::vector<EliminatedPoint> points;
 
-  ReducedSystem(const std::vector<LinearisedCorner>& corners, double damping) {
+  CornerSystem(const std::vector<LinearisedCorner>& corners, double damping) {
     points.reserve(corners.size());
     for (const LinearisedCorner& c : corners) {
       points.emplace_back(c, damping);
@@ -119,7 +119,7 @@ struct ReducedSystem {
 };
 
 /// The change of the motion that minimises the linearised system; false if there is none.
-bool change_of(const ReducedSystem& system, const FloorBasis* within, Vector6d& delta) {
+bool change_of(const CornerSystem& system, const FloorBasis* within, Vector6d& delta) {
   const auto solved = [](const Cholesky& H, const Eigen::VectorXd& g) {
     return H.is_positive_definite() ? std::optional<Eigen::VectorXd>(H.solve(g)) : std::nullopt;
   };
@@ -133,7 +133,7 @@ bool change_of(const ReducedSystem& system, const FloorBasis* within, Vector6d& 
 }
 
 /// The state after a step of the system; false if it has none.
-bool advance(const ReducedSystem& system,
+bool advance(const CornerSystem& system,
              const FloorBasis* within,
              const StepState& from,
              StepState& to,
@@ -170,7 +170,7 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
   double damping = first_damping;
   StepState next;
   for (int i = 0; i < max_iterations; ++i) {
-    const ReducedSystem system(state.corners, damping);
+    const CornerSystem system(state.corners, damping);
     double largest = 0;
     const bool better = advance(system, within, state, next, largest) &&
                         next.relinearise(projectors, corners) && next.chi2 <= state.chi2;
@@ -186,7 +186,7 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
   }
   RefinedStep refined;
   refined.T_from_to = state.T_from_to;
-  refined.information = ReducedSystem(state.corners, 0).H;
+  refined.information = CornerSystem(state.corners, 0).H;
   for (const LinearisedCorner& corner : state.corners) refined.chi2.push_back(corner.chi2());
   refined.x_from_m = std::move(state.x_from_m);
   return refined;

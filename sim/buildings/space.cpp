@@ -20,9 +20,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// The floor on the lines of a grid that holds all sides of its rectangles.
-class FloorGrid {
+class CellGrid {
  public:
-  explicit FloorGrid(const std::vector<AlignedBox2d>& floor) : floor_(floor) {
+  explicit CellGrid(const std::vector<AlignedBox2d>& floor) : floor_(floor) {
     for (int axis = 0; axis < 2; ++axis) {
       std::set<double> places;
       for (const AlignedBox2d& part : floor) {
@@ -51,8 +51,7 @@ class FloorGrid {
 
 // Stretches of one grid line along `axis` with floor on one side only. `sign` +1: the floor is on
 // the side of larger coordinates.
-void walls_along(
-    const FloorGrid& grid, int axis, int line, int sign, std::vector<RoomWall>& walls) {
+void walls_along(const CellGrid& grid, int axis, int line, int sign, std::vector<RoomWall>& walls) {
   const auto is_wall = [&](int cell) {
     const int inside = sign > 0 ? line : line - 1, outside = sign > 0 ? line - 1 : line;
     return axis == 0 ? grid.is_floor(cell, inside) && !grid.is_floor(cell, outside)
@@ -123,7 +122,7 @@ void raise_wall(Shapes& shapes,
 }  // namespace
 
 std::vector<RoomWall> walls_around(const std::vector<AlignedBox2d>& floor_m) {
-  const FloorGrid grid(floor_m);
+  const CellGrid grid(floor_m);
   std::vector<RoomWall> walls;
   for (int line = 0; line <= grid.cells(1); ++line) walls_along(grid, 0, line, 1, walls);
   for (int line = 0; line <= grid.cells(0); ++line) walls_along(grid, 1, line, -1, walls);

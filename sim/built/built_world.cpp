@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "calib/base/plane_vectors.h"
 #include "calib/pose.h"
 #include "localise/joined_lines.h"
 #include "sim/built/planar_patches.h"
@@ -19,6 +20,8 @@
 #include "sim/world/plan_distance.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::cross;
 
 namespace {
 
@@ -73,8 +76,6 @@ std::optional<double> floor_height(const std::vector<Patch>& patches) {
 struct Step {
   Vector2d from_m, to_m;
 };
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 bool meet(const Step& step, const Vector2d& a, const Vector2d& b) {
   const auto parts = [](const Vector2d& p, const Vector2d& q, const Vector2d& c,

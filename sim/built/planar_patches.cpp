@@ -15,9 +15,12 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/plane_vectors.h"
 #include "sim/built/depth_cloud.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::cross;
 
 namespace {
 
@@ -99,7 +102,7 @@ double area_of(const std::vector<Vector2d>& polygon) {
   double twice = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += cross(a, b);
   }
   return 0.5 * twice;
 }

@@ -31,7 +31,7 @@ namespace {
 using Polygon = std::vector<Vector3d>;
 
 /// Triangles of polygons, and which polygon each belongs to.
-struct Mesh {
+struct SceneMesh {
   Triangles triangles;
   std::vector<int> owner;
 
@@ -115,7 +115,7 @@ class Solids {
         {plane.normal, plane.distance_m, material, lamps_near(polygon, lamps_, reach_)});
   }
 
-  Mesh mesh;
+  SceneMesh mesh;
   std::vector<SolidFace> faces;
 
  private:
@@ -148,7 +148,7 @@ ImageScene image_scene(const World& world, const ImageSceneOptions& options) {
     for (const Polygon& side : sides_of(bar, options.appearance.line_width_m))
       solids.add(side, material);
   }
-  Mesh paint;
+  SceneMesh paint;
   std::vector<PaintPlane> figures;
   for (const PaintedFigure& figure : wires.figures) {
     const PolygonPlane plane = polygon_plane(figure.polygon_m);

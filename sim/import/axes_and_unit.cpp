@@ -38,12 +38,12 @@ constexpr double highest_storey_m = 6;                       // of several, from
 constexpr double shortest_plan_m = 3, longest_plan_m = 500;  // the longer side of the plan
 
 /// What stands along an axis: its lower and upper end, and how much of it there is.
-struct Upright {
+struct UprightFace {
   double low, high, amount;
 };
 
-std::vector<Upright> uprights(const Mesh& mesh, int axis) {
-  std::vector<Upright> found;
+std::vector<UprightFace> uprights(const Mesh& mesh, int axis) {
+  std::vector<UprightFace> found;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
     const Eigen::Vector3d twice = (q - p).cross(r - p);
@@ -91,13 +91,13 @@ double take_commonest(std::array<double, count>& slices, bool is_folded) {
 
 /// Share of what stands along an axis that begins at the commonest of 100 heights, times that of
 /// what ends at the commonest: walls stand on one floor and reach one ceiling.
-double alike(const std::vector<Upright>& uprights, const Heights& heights) {
+double alike(const std::vector<UprightFace>& uprights, const Heights& heights) {
   std::array<double, 101> begins{}, ends{};
   double all = 0;
   const auto at = [&](double height) {
     return static_cast<std::size_t>(std::lround(100 * heights.share(height)));
   };
-  for (const Upright& upright : uprights) {
+  for (const UprightFace& upright : uprights) {
     begins[at(upright.low)] += upright.amount;
     ends[at(upright.high)] += upright.amount;
     all += upright.amount;

@@ -54,9 +54,9 @@ int part_of_cores() {
   return std::max(1, CPU_COUNT(&mine) / static_cast<int>(std::max<std::ptrdiff_t>(1, same)));
 }
 
-class World : public MpiRanks {
+class WorldCommunicator : public MpiRanks {
  public:
-  World() {
+  WorldCommunicator() {
     int level = 0;
     check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level), "the start");
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
@@ -69,7 +69,7 @@ class World : public MpiRanks {
     cores_ = part_of_cores();
   }
   /// Gives what is on its way some time: a rank that has left may never receive it.
-  ~World() override {
+  ~WorldCommunicator() override {
     using namespace std::chrono_literals;
     const auto end = std::chrono::steady_clock::now() + 1s;
     while (drop_sent(), !sending_.empty() && std::chrono::steady_clock::now() < end) {
@@ -129,7 +129,7 @@ class World : public MpiRanks {
 
 }  // namespace
 
-std::unique_ptr<MpiRanks> mpi_ranks() { return std::make_unique<World>(); }
+std::unique_ptr<MpiRanks> mpi_ranks() { return std::make_unique<WorldCommunicator>(); }
 
 std::string mpi_version() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> words{};

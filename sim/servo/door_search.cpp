@@ -69,20 +69,20 @@ class UprightLines {
   std::vector<Entry> entries_;
 };
 
-struct Hypothesis {
+struct GoalHypothesis {
   double score;
   Pose2D goal;
 };
 
-std::vector<Hypothesis> lattice_scores(const DesiredView& desired,
-                                       std::span<const SeenLine> seen,
-                                       const SearchRange& range) {
+std::vector<GoalHypothesis> lattice_scores(const DesiredView& desired,
+                                           std::span<const SeenLine> seen,
+                                           const SearchRange& range) {
   constexpr double back_step_m = 0.1, aside_step_m = 0.06, turn_step_rad = 0.0175, reach_px = 12;
   const UprightLines lines(seen);
   const auto steps = [](double from, double to, double step) {
     return 1 + static_cast<int>(std::ceil((to - from) / step));
   };
-  std::vector<Hypothesis> all;
+  std::vector<GoalHypothesis> all;
   const int backs = steps(range.nearest_back_m, range.farthest_back_m, back_step_m);
   const int asides = steps(-range.aside_m, range.aside_m, aside_step_m);
   const int turns = steps(-range.turned_rad, range.turned_rad, turn_step_rad);
@@ -111,12 +111,12 @@ double rho_apart(const ImageLine& a, const ImageLine& b) {
 }
 
 /// The first `count` that are not beside an earlier one.
-std::vector<Hypothesis> apart(std::span<const Hypothesis> all, std::size_t count) {
+std::vector<GoalHypothesis> apart(std::span<const GoalHypothesis> all, std::size_t count) {
   constexpr double beside_m = 0.11, beside_rad = 0.027;
-  std::vector<Hypothesis> kept;
-  for (const Hypothesis& h : all) {
+  std::vector<GoalHypothesis> kept;
+  for (const GoalHypothesis& h : all) {
     if (kept.size() == count) break;
-    const bool beside = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {
+    const bool beside = std::any_of(kept.begin(), kept.end(), [&](const GoalHypothesis& k) {
       return distance_m(h.goal, k.goal) < beside_m &&
              std::abs(h.goal.heading_rad - k.goal.heading_rad) < beside_rad;
     });
@@ -126,10 +126,10 @@ std::vector<Hypothesis> apart(std::span<const Hypothesis> all, std::size_t count
 }
 
 /// Closer and closer matches of the lines around a hypothesis, and how well they agree at last.
-std::optional<Hypothesis> refined(const DesiredView& desired,
-                                  std::span<const SeenLine> seen,
-                                  const SearchRange& range,
-                                  Pose2D goal) {
+std::optional<GoalHypothesis> refined(const DesiredView& desired,
+                                      std::span<const SeenLine> seen,
+                                      const SearchRange& range,
+                                      Pose2D goal) {
   constexpr double reach_px = 6;
   for (const double gate_px : {12., 9., 7.}) {
     const auto predicted = images_of(lines_at(desired, goal), desired.T_right_left);
@@ -149,7 +149,7 @@ std::optional<Hypothesis> refined(const DesiredView& desired,
         difference(match.seen.image, predicted[static_cast<std::size_t>(match.line)]);
     score += 1 - desired.focal_px * std::max(std::abs(d[0]), std::abs(d[2])) / reach_px;
   }
-  return Hypothesis{score, goal};
+  return GoalHypothesis{score, goal};
 }
 
 }  // namespace
@@ -208,11 +208,13 @@ std::optional<Pose2D> find_goal(const DesiredView& desired,
                                 const SearchRange& range) {
   constexpr std::size_t refined_ones = 20;
   constexpr double least_score = 2;
-  std::vector<Hypothesis> all = lattice_scores(desired, seen, range);
-  const auto better = [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; };
+  std::vector<GoalHypothesis> all = lattice_scores(desired, seen, range);
+  const auto better = [](const GoalHypothesis& a, const GoalHypothesis& b) {
+    return a.score > b.score;
+  };
   std::stable_sort(all.begin(), all.end(), better);
-  std::optional<Hypothesis> best;
-  for (const Hypothesis& hypothesis : apart(all, refined_ones)) {
+  std::optional<GoalHypothesis> best;
+  for (const GoalHypothesis& hypothesis : apart(all, refined_ones)) {
     const auto result = refined(desired, seen, range, hypothesis.goal);
     if (result && (!best || better(*result, *best))) best = result;
   }

@@ -17,9 +17,9 @@ using namespace vernier::internal;
 namespace {
 
 /// psi_g, of corners.
-class CornerError : public UncertaintySource {
+class CornerErrorSource : public UncertaintySource {
  public:
-  explicit CornerError(const SourceSettings& s) : sigma_px_(s.corner_sigma_px) {}
+  explicit CornerErrorSource(const SourceSettings& s) : sigma_px_(s.corner_sigma_px) {}
   std::string_view name() const override { return "corner_sigma_px"; }
 
   void apply(const SensingContext& context, SensedView& view) const override {
@@ -38,7 +38,7 @@ class CornerError : public UncertaintySource {
 }  // namespace
 
 SourcePointer make_corner_error(const SourceSettings& s) {
-  return std::make_unique<CornerError>(s);
+  return std::make_unique<CornerErrorSource>(s);
 }
 
 }  // namespace vernier::sim::internal

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/plane_vectors.h"
 #include "sim/sources.h"
 #include "sim/sources/source_factories.h"
 #include "sim/uncertainty_source.h"
@@ -21,6 +22,7 @@
 namespace vernier::sim::internal {
 
 using namespace stereo;
+using vernier::internal::cross;
 
 namespace {
 
@@ -33,8 +35,7 @@ Eigen::Vector2d direction(const ImageSegment& s) { return (s.b_px - s.a_px).norm
 
 /// How far a point lies from a line, positive on the side of its left normal.
 double across_px(const ImageSegment& line, const Eigen::Vector2d& point_px) {
-  const Eigen::Vector2d d = direction(line), to = point_px - line.a_px;
-  return d.x() * to.y() - d.y() * to.x();
+  return cross(direction(line), point_px - line.a_px);
 }
 
 /// Where along the shorter line, from 0 to 1, the middle of the part is that runs beside the longer
@@ -42,7 +43,7 @@ double across_px(const ImageSegment& line, const Eigen::Vector2d& point_px) {
 std::optional<double> beside(const ImageSegment& longer, const ImageSegment& shorter) {
   static const double most_sine = std::sin(parallel_rad);
   const Eigen::Vector2d d = direction(longer), e = direction(shorter);
-  if (!(std::abs(d.x() * e.y() - d.y() * e.x()) <= most_sine)) return std::nullopt;
+  if (!(std::abs(cross(d, e)) <= most_sine)) return std::nullopt;
   const double a = d.dot(shorter.a_px - longer.a_px), b = d.dot(shorter.b_px - longer.a_px);
   const double from = std::max(0.0, std::min(a, b)),
                to = std::min(longer.length_px(), std::max(a, b));

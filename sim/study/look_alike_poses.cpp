@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "calib/base/plane_vectors.h"
 #include "localise/place.h"
 #include "sim/study/upright_edges.h"
 #include "sim/study/wire_frame.h"
@@ -16,6 +17,7 @@
 namespace vernier::sim::internal {
 
 using namespace localise;
+using vernier::internal::cross;
 
 namespace {
 
@@ -38,16 +40,11 @@ Pose2D pose_that_brings(const Eigen::Vector2d& seen_m,
 
 double angle(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
 
-/// Of unit vectors; otherwise times their lengths.
-double sine_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// Distance of a point from a line on the floor, positive on its left.
 double left_of(const Eigen::Vector2d& at,
                const Eigen::Vector2d& on_line,
                const Eigen::Vector2d& direction) {
-  return sine_between(direction, at - on_line);
+  return cross(direction, at - on_line);
 }
 
 bool fit_uprights(const UprightEdges& world,
@@ -77,7 +74,7 @@ Eigen::Vector2d crossing(const Eigen::Vector2d& p,
                          const Eigen::Vector2d& d,
                          const Eigen::Vector2d& q,
                          const Eigen::Vector2d& e) {
-  return p + sine_between(q - p, e) / sine_between(d, e) * d;
+  return p + cross(q - p, e) / cross(d, e) * d;
 }
 
 /// All of the floor at a height.
@@ -139,7 +136,7 @@ void LookAlikePoses::pair_levels(const std::vector<ViewEdge>& view,
     for (std::size_t j = i + 1; j < levels.size() && !used[i]; ++j) {
       if (needed_px <= 0 || pairs.size() >= most_pairs) return;
       const ViewEdge& q = view[levels[j].edge];
-      const double sine = sine_between(direction_of(p.a_m, p.b_m), direction_of(q.a_m, q.b_m));
+      const double sine = cross(direction_of(p.a_m, p.b_m), direction_of(q.a_m, q.b_m));
       if (used[j] || std::abs(sine) < least_sine) continue;
       used[i] = used[j] = 1;
       needed_px -= std::min(p.length_px, q.length_px);
@@ -155,7 +152,7 @@ LookAlikePoses::Tried LookAlikePoses::fit_levels(const ViewEdge& p,
   constexpr double slack_sine = 0.01;
   const Eigen::Vector2d along_p = direction_of(p.a_m, p.b_m), along_q = direction_of(q.a_m, q.b_m);
   const Eigen::Vector2d seen = crossing(p.a_m.head<2>(), along_p, q.a_m.head<2>(), along_q);
-  const double sine = sine_between(along_p, along_q), cosine = along_p.dot(along_q);
+  const double sine = cross(along_p, along_q), cosine = along_p.dot(along_q);
   double reach = 0;  // from any point of one to any of the other
   for (const Eigen::Vector3d& of_p : {p.a_m, p.b_m}) {
     for (const Eigen::Vector3d& of_q : {q.a_m, q.b_m}) {
@@ -165,7 +162,7 @@ LookAlikePoses::Tried LookAlikePoses::fit_levels(const ViewEdge& p,
   const auto fit = [&](const WorldSegment& a, const WorldSegment& b, double side) {
     const Eigen::Vector2d along_a = side * direction_of(a.a_m, a.b_m);
     const Eigen::Vector2d along_b = direction_of(b.a_m, b.b_m);
-    const double sine_there = sine_between(along_a, along_b), cosine_there = along_a.dot(along_b);
+    const double sine_there = cross(along_a, along_b), cosine_there = along_a.dot(along_b);
     // b is seen in one direction or the other
     if (std::abs(sine_there * cosine - cosine_there * sine) > slack_sine) return false;
     const Pose2D pose =

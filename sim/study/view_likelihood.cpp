@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calib/base/plane_vectors.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -23,6 +24,7 @@ namespace vernier::sim::internal {
 
 using stereo::ImageSegment;
 using stereo::StereoSegment;
+using vernier::internal::cross;
 
 namespace {
 
@@ -45,7 +47,7 @@ OnLine on_line(const ImageSegment& part, const ImageSegment& whole) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Eigen::Vector2d d = ends[i] - whole.a_px;
     result.along[i] = u.dot(d);
-    result.across[i] = u.x() * d.y() - u.y() * d.x();
+    result.across[i] = cross(u, d);
   }
   return result;
 }

@@ -9,9 +9,13 @@
 #include <numeric>
 #include <utility>
 
+#include "calib/base/plane_vectors.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::cross;
+
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -20,10 +24,6 @@ using Cuts = std::vector<std::pair<int, int>>;
 
 constexpr double straight_m = 1e-9;  ///< tolerance of a vertex to the line of its neighbours
 constexpr double min_width_m = 1e-10;
-
-double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
 
 /// Signed distance of `v` from the line from `u` to `w`: positive for a convex vertex of a
 /// counter-clockwise loop.

@@ -7,7 +7,10 @@
 
 Fails if two sources of a module define the same name in unnamed namespaces within one namespace:
 which of them meet in a unit changes with every source that is added. Functions may be overloaded, but
-not by anything else. A constant of a header, which any of them may include, counts like one of a source. With files, these are taken for the sources of one module.
+not by anything else. Types are compared without their namespaces. A constant of a header, which any
+of them may include, counts like one of a source, and so does a type of a header of the module or of
+one below it: sources that share the unit would find the local one instead. With files, these are
+taken for the sources of one module.
 """
 import collections
 import re
@@ -24,6 +27,7 @@ ALIAS = re.compile(r"using (\w+)(?: = |;)|using [\w:]+::(\w+);")
 VARIABLE = re.compile(r"(?!using|return|template|friend|struct|class|enum|namespace)"
                       r"[\w:<>, ]+?[&* ](\w+)(?:\[\w*\])?\s*(?:=|\{|;$)")
 DECLARATOR = re.compile(r",\s*(\w+)\s*(?==|\{)")
+QUALIFIER = re.compile(r"\b(?:\w+::)+")
 FUNCTION = re.compile(r"(?!using|return|template)[\w:<>,&* ]+?\b(\w+)\((.*)")
 
 
@@ -36,7 +40,7 @@ def parameters(lines):
             break
     listed = text.split(") {")[0].split(");")[0]
     without_defaults = (re.sub(r"\s*=.*", "", part.strip()) for part in listed.split(","))
-    return ",".join(re.sub(r"\s*\b\w+$", "", part) for part in without_defaults)
+    return ",".join(re.sub(r"\s*\b\w+$", "", QUALIFIER.sub("", part)) for part in without_defaults)
 
 
 def local_names(text):
@@ -80,6 +84,22 @@ def header_constants(text):
                 yield space, found[1]
 
 
+def header_types(text):
+    """Names of the types that a header defines for all, at the start of a line."""
+    return {found[1] for line in text.split("\n") if (found := TYPE.match(line))}
+
+
+def hidden_types(files, headers):
+    """Local types that hide one of a header: (name, the two files)."""
+    shared = {name: str(header) for header in headers
+              for name in header_types(header.read_text(encoding="utf-8"))}
+    for file in (file for file in files if file.suffix == ".cpp"):
+        for space, name in local_names(file.read_text(encoding="utf-8")):
+            name = name.removeprefix("type ").split(" = ")[0]
+            if name in shared:
+                yield f"{space}::{name}", [str(file), shared[name]]
+
+
 def twice(files):
     """Names that more than one of the files defines: (name, the files)."""
     where, functions = collections.defaultdict(set), collections.defaultdict(set)
@@ -110,6 +130,9 @@ def main():
          if "node_modules" not in file.parts]
         for module in MODULES]
     faults = [fault for files in modules for fault in twice(files)]
+    for number, files in enumerate(modules):
+        headers = [file for below in modules[:number + 1] for file in below if file.suffix == ".h"]
+        faults += hidden_types(files, headers)
     for name, files in faults:
         print(f"{name} is defined in {' and '.join(files)}: share it, or rename one")
     print(f"{sum(map(len, modules))} sources, {len(faults)} names defined twice")

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A name that unity_test.py must find twice; never compiled.
+// Names that unity_test.py must find twice; never compiled.
 namespace vernier {
 
 inline constexpr double of_header[] = {1, 2};
+struct OfHeader {};
 
 }  // namespace vernier

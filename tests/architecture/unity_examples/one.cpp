@@ -12,6 +12,8 @@ auto chosen = 5;
 constexpr double of_header = 2;
 constexpr std::array<std::pair<int, int>, 1> beside{{{1, 0}}};
 struct Part {};
+class OfHeader {};
+int qualified(const std::string& x) { return x.size(); }
 int overloaded(int x) { return x; }
 int with_default(int x, const char* y = "") { return x; }
 

@@ -11,6 +11,7 @@ int table[3] = {1, 2, 3};
 auto chosen = 6;
 int beside(int x) { return x; }
 struct Part {};
+int qualified(const string& x) { return x.size(); }
 int overloaded(double x) { return static_cast<int>(x); }
 long with_default(int x, const char* name = "x") { return x; }
 

@@ -11,6 +11,7 @@ set(vernier_fuzz_targets
   fuzz/targets/corners_vnl.cpp
   fuzz/targets/disparity_map.cpp
   fuzz/targets/evaluation_json.cpp
+  fuzz/targets/ifc_unit.cpp
   fuzz/targets/image_bytes.cpp
   fuzz/targets/image_names.cpp
   fuzz/targets/json.cpp

@@ -22,10 +22,10 @@ Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::Vect
   return V * ((1 - h).rsqrt() * (V.transpose() * x).array()).matrix();
 }
 
-/// Ledoit and Wolf's shrinkage intensity of J = Σ x_f x_fᵀ towards the target.
-double shrinkage_intensity(const Eigen::MatrixXd& pulls,
-                           const Eigen::MatrixXd& J,
-                           const Eigen::MatrixXd& target) {
+/// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target by Ledoit and Wolf.
+double ledoit_wolf_intensity(const Eigen::MatrixXd& pulls,
+                             const Eigen::MatrixXd& J,
+                             const Eigen::MatrixXd& target) {
   const auto n = static_cast<double>(pulls.cols());
   const double spread = (J - target).squaredNorm();
   if (!(spread > 0)) return 1;
@@ -34,6 +34,24 @@ double shrinkage_intensity(const Eigen::MatrixXd& pulls,
     scatter += (n * pulls.col(f) * pulls.col(f).transpose() - J).squaredNorm();
   }
   return std::min(1.0, scatter / (n * n) / spread);
+}
+
+/// Shrinkage intensity of J = Σ x_f x_fᵀ towards a multiple of I for a Gaussian x, of which there
+/// are `n` (Chen, Wiesel, Eldar and Hero 2010, equation 23, "OAS").
+double oracle_approximating_intensity(const Eigen::MatrixXd& J, double n) {
+  const auto p = static_cast<double>(J.rows());
+  const double squares = J.squaredNorm(), trace2 = J.trace() * J.trace();
+  const double spread = (n + 1 - 2 / p) * (squares - trace2 / p);
+  if (!(spread > 0)) return 1;
+  return std::min(1.0, ((1 - 2 / p) * squares + trace2) / spread);
+}
+
+/// A covariance whose scale is the mean square of few pulls is too small by the variance of
+/// Student's t, ν / (ν − 2), for a view's pull has about three effective degrees of freedom.
+double student_variance(Eigen::Index frames) {
+  constexpr double of_a_view = 3;
+  const double dof = of_a_view * static_cast<double>(frames - 1);
+  return dof / (dof - 2);
 }
 
 }  // namespace
@@ -64,9 +82,14 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
   const bool effects = bound_of == BoundOf::random_effects;
   if (effects) result.inflation = std::max(1.0, result.inflation);
   const Eigen::MatrixXd target = result.inflation * data_share;
-  result.shrinkage = effects ? 1 : shrinkage_intensity(pulls, J, target);
-  const Eigen::MatrixXd shrunk =
-      (1 - result.shrinkage) * J + result.shrinkage * target + prior_share;
+  Eigen::MatrixXd shrunk = target;
+  if (!effects) {
+    result.shrinkage = std::max(ledoit_wolf_intensity(pulls, J, target),
+                                oracle_approximating_intensity(J, static_cast<double>(frames - 1)));
+    shrunk =
+        student_variance(frames) * ((1 - result.shrinkage) * J + result.shrinkage * target).eval();
+  }
+  shrunk += prior_share;
   result.matrix = L * shrunk * L.transpose();
   result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
   return result;

@@ -155,8 +155,8 @@ class Convert(Case):
         self.complains(*advice, of=f'vernier convert RIG {remedy}')
         image = ROOT / 'datasets/none.png'
         self.complains('rectify', '--rig', three, '--left', image, '--right', image, '-o',
-                       f'{self.out("r")}/', of='')
-        self.complains('plan', three, '--depth-sd', '0.05', of='')
+                       f'{self.out("r")}/', of=remedy)
+        self.complains('plan', three, '--depth-error', '0.05', of=remedy)
         self.works('convert', three, '--cameras', 'b,c', '-o', pair)
         self.works('advise', pair, *advice[2:])
         self.assertEqual(len(self.rig('pair.json')['covariance']['matrix']),

@@ -47,9 +47,9 @@ double oracle_approximating_intensity(const Eigen::MatrixXd& J, double n) {
 }
 
 /// A covariance whose scale is the mean square of few pulls is too small by the variance of
-/// Student's t, ν / (ν − 2), for a view's pull has about three effective degrees of freedom.
+/// Student's t, ν / (ν − 2), for a view's pull has about four effective degrees of freedom.
 double student_variance(Eigen::Index frames) {
-  constexpr double of_a_view = 3;
+  constexpr double of_a_view = 4;  // 3 fit smooth errors, 6 white noise
   const double dof = of_a_view * static_cast<double>(frames - 1);
   return dof / (dof - 2);
 }

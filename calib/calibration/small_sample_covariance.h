@@ -24,7 +24,7 @@ struct SmallSampleCovariance {
 /// H_f = I),
 ///
 ///     u_f = (I − H_f)^(-1/2) Lᵀ g_f,    J = Σ u_f u_fᵀ
-///     covariance = ν / (ν − 2) L [(1 − α) J + α (tr J / p) I] Lᵀ,    ν = 3 (F − 1)
+///     covariance = ν / (ν − 2) L [(1 − α) J + α (tr J / p) I] Lᵀ,    ν = 4 (F − 1)
 ///
 /// The exponent makes J unbiased for white noise (bias-reduced linearisation, Bell and McCaffrey
 /// 2002; with exponent −1 it is the leave-one-view-out jackknife, which is too wide by the
@@ -32,9 +32,10 @@ struct SmallSampleCovariance {
 /// larger of the intensities of Ledoit and Wolf (2004), from the scatter of the views, and of Chen,
 /// Wiesel, Eldar and Hero (2010), which does not believe the scatter of three or four. The factor
 /// is the variance of Student's t with ν degrees of freedom, since the scale is a mean square of
-/// few pulls; 3 a view was chosen on simulated sets with smooth errors. A prior of information P
-/// has the fraction G = Lᵀ P L: then the shrinkage target uses I − G instead of I and p − tr G
-/// instead of p, and G is added. Needs at least three frames (else Error).
+/// few pulls; 4 a view was chosen on simulated sets, between smooth errors (3) and white noise (6).
+/// A prior of information P has the fraction G = Lᵀ P L: then the shrinkage target uses I − G
+/// instead of I and p − tr G instead of p, and G is added. Needs at least three frames (else
+/// Error).
 ///
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of a few frames, is far from it in most directions: then α = 1 and tr J / p

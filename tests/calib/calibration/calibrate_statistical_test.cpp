@@ -119,8 +119,7 @@ TEST(SmallSampleCovariance, IsTrueForWhiteNoiseToo) {
 }
 
 // 80 sets of 3, 4 and 6 views each, seeds from 8000; ν was chosen on seeds 11 to 70, of 3 to 13
-// views. Before there was a factor, and with the intensity of Ledoit and Wolf alone, 2.6, 1.9
-// and 1.4.
+// views. Without the factor, with the intensity of Ledoit and Wolf alone, 2.7, 1.9 and 1.3.
 TEST(SmallSampleCovariance, IsTrueForFewViews) {
   for (const int frames : {3, 4, 6}) {
     const auto seed = static_cast<std::uint64_t>(8000 + 100 * frames);

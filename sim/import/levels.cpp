@@ -19,7 +19,6 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double floor_cosine = 0.98, wall_cosine = 0.2;
 constexpr double outer = 0.1;          // of the extent
 constexpr double at_level_m = 6e-3;    // of a mesh 10 m large: 3 cm in a building of 50 m
 constexpr double same_plane = 0.9999;  // cosine between the normals of two faces in a plane

@@ -14,6 +14,8 @@ struct Level {
   double height, area;
 };
 
+inline constexpr double floor_cosine = 0.98;  ///< a surface is level from this on
+inline constexpr double wall_cosine = 0.2;    ///< and upright below this
 inline constexpr double least_of_plan =
     0.33;  ///< of the plan's bounding box: a floor, also of an L
 

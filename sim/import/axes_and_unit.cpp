@@ -16,6 +16,7 @@
 #include "calib/error.h"
 #include "sim/import/convex_faces.h"
 #include "sim/import/even_storeys.h"
+#include "sim/import/levels.h"
 #include "sim/import/mesh.h"
 #include "sim/import/storeys.h"
 
@@ -144,17 +145,22 @@ std::optional<int> clear_winner(const std::array<double, 3>& values, double time
   return best;
 }
 
-/// The same mesh 10 m large, with its faces joined where they lie in a plane, each as a fan of
-/// triangles: a wall of small triangles reaches from floor to ceiling like one of two.
-Mesh with_joined_faces(Mesh mesh) {
+/// The same mesh 10 m large, and welded.
+Mesh of_one_size(Mesh mesh) {
   constexpr double size_m = 10, weld_m = 1e-4;
   const auto [low, high] = extent_of(mesh);
   const double scale = size_m / std::max((high - low).norm(), 1e-300);
   for (Eigen::Vector3d& v : mesh.vertices) v = scale * (v - low);
+  return welded(mesh, weld_m);
+}
+
+/// The same mesh with its faces joined where they lie in a plane, each as a fan of triangles: a
+/// wall of small triangles reaches from floor to ceiling like one of two.
+Mesh with_joined_faces(const Mesh& mesh) {
   Mesh joined;
   joined.lines = mesh.lines;
   if (!mesh.lines.empty()) joined.vertices = mesh.vertices;
-  for (const Polygon& face : convex_faces(welded(mesh, weld_m))) {
+  for (const Polygon& face : convex_faces(mesh)) {
     const auto first = static_cast<std::uint32_t>(joined.vertices.size());
     joined.vertices.insert(joined.vertices.end(), face.begin(), face.end());
     for (std::uint32_t i = 1; i + 1 < face.size(); ++i) {
@@ -175,16 +181,14 @@ bool may_lie(const Eigen::Vector3d& size, int axis) {
 }
 
 /// The axis for which two of three signs speak: walls that begin and end alike and are low, level
-/// surface at few heights, and the smallest height; between two foldings else that for which their
-/// product does.
+/// surface at few heights, and the smallest height.
 std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& heights) {
-  std::array<double, 3> by_walls{}, by_floors{}, by_size{}, by_all{};
+  std::array<double, 3> by_walls{}, by_floors{}, by_size{};
   for (int axis = 0; axis < 3; ++axis) {
     const double size = std::max(heights[axis].size, 1e-300);
     by_walls[axis] = alike(uprights(mesh, axis), heights[axis]) / size;
     by_floors[axis] = gathered(mesh, axis, heights[axis]);
     by_size[axis] = 1 / size;
-    by_all[axis] = by_walls[axis] * by_floors[axis] * by_size[axis];
   }
   std::array<int, 3> votes{};
   for (const std::optional<int>& sign :
@@ -194,42 +198,65 @@ std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& he
   for (int axis = 0; axis < 3; ++axis) {
     if (votes[axis] >= 2) return axis;
   }
-  const bool is_folded =
-      std::any_of(heights.begin(), heights.end(), [](const Heights& one) { return one.is_folded; });
-  return is_folded ? clear_winner(by_all, 1.3) : std::nullopt;
+  return {};
 }
 
-/// Up by the signs of one storey: a building of several is folded into one first. Where folding
-/// makes them unclear, as by walls at even distances, or finds but two storeys against what the
-/// whole building says, that speaks, if its way to see the building is the lowest.
-int up_axis_by_look(const Mesh& file, const std::string& place) {
-  const Mesh mesh = with_joined_faces(file);
-  if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
+using FloorsByAxis = std::array<std::optional<InnerFloors>, 3>;
+
+/// Whether walls may end at floors within the building if any axis but this is up.
+bool may_end_elsewhere(const FloorsByAxis& floors, int axis) {
+  constexpr double doubtful = 0.6;  // of their cross-section
+  for (int other = 0; other < 3; ++other) {
+    if (other != axis && floors[other] && floors[other]->ending >= doubtful) return true;
+  }
+  return false;
+}
+
+/// The only axis along which walls end at floors within the building, if its plan is wider than a
+/// storey is high: rooms in a row, each a box, are otherwise storeys of a narrow tower.
+std::optional<int> axis_of_floors(const FloorsByAxis& floors, const Eigen::Vector3d& size) {
+  constexpr double nearly_all = 0.8;    // of the cross-section of walls
+  constexpr double least_width = 1.25;  // of a storey's height
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!floors[axis] || floors[axis]->ending < nearly_all) continue;
+    const double width = std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
+    if (may_end_elsewhere(floors, axis) || width < least_width * floors[axis]->highest) return {};
+    return axis;
+  }
+  return {};
+}
+
+/// The axis for which the signs of the whole building speak, unless those of its storeys, folded
+/// into one, speak for another, or more of its walls end at floors along another.
+std::optional<int> axis_by_signs(const Mesh& mesh, const FloorsByAxis& floors) {
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   std::array<Heights, 3> whole, folded;
-  std::vector<int> towers;  // axes with more even storeys than rows of rooms have walls by chance
-  std::array<bool, 3> pairs{};  // two storeys only, which is found by chance too
-  constexpr int many = 4;
   for (int axis = 0; axis < 3; ++axis) {
     whole[axis] = folded[axis] = {low[axis], size[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
     if (storeys) folded[axis] = {storeys->first, storeys->height, true};
-    if (storeys && storeys->count >= many) towers.push_back(axis);
-    pairs[axis] = storeys && storeys->count == 2;
   }
-  std::optional<int> up = voted_axis(mesh, folded);
-  const bool is_chance = up && pairs[*up];
-  if (!up || is_chance) {
-    std::array<double, 3> by_size{};
-    for (int axis = 0; axis < 3; ++axis) by_size[axis] = 1 / std::max(folded[axis].size, 1e-300);
-    const std::optional<int> by_whole = voted_axis(mesh, whole);
-    const bool is_lowest = by_whole && clear_winner(by_size, 1.2) == by_whole;
-    if (!is_chance || (by_whole && by_whole != up)) {
-      const bool is_tower = towers.empty() || towers == std::vector<int>{by_whole.value_or(-1)};
-      up = is_lowest && is_tower ? by_whole : std::nullopt;
-    }
+  const std::optional<int> up = voted_axis(mesh, whole);
+  if (!up || voted_axis(mesh, folded).value_or(*up) != *up || may_end_elsewhere(floors, *up)) {
+    return {};
   }
+  for (const std::optional<InnerFloors>& other : floors) {
+    if (floors[*up] && other && other->ending > floors[*up]->ending) return {};
+  }
+  return up;
+}
+
+int up_axis_by_look(const Mesh& file, const std::string& place) {
+  const Mesh mesh = of_one_size(file);
+  if (mesh.triangles.empty() && mesh.lines.empty()) {
+    throw Error(place, "has no surface", "give --up");
+  }
+  const auto [low, high] = extent_of(mesh);
+  const Eigen::Vector3d size = high - low;
+  const FloorsByAxis floors{inner_floors(mesh, 0), inner_floors(mesh, 1), inner_floors(mesh, 2)};
+  std::optional<int> up = axis_of_floors(floors, size);
+  if (!up) up = axis_by_signs(with_joined_faces(mesh), floors);
   if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",
               "say so with --up x, y or z");

@@ -9,18 +9,18 @@
 #include <cstddef>
 #include <vector>
 
+#include "sim/import/levels.h"
 #include "sim/import/mesh.h"
 
 namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double floor_cosine = 0.98;
-constexpr double least_of_plan = 0.33;  // of the plan's bounding box: a floor, also of an L
-constexpr double even = 0.02;           // of a storey
-constexpr double most_slender = 3;      // height by the narrower side of the plan
+constexpr double even = 0.02;       // of a storey
+constexpr double most_slender = 3;  // height by the narrower side of the plan
 constexpr double most_slender_of_many = 4.5;
-constexpr int many = 5;  // storeys
+constexpr int many = 5;            // storeys
+constexpr double half_way = 0.15;  // of a storey, from its middle
 constexpr std::size_t most_levels = 200;
 
 // What lies below and above a row of levels, in storeys.
@@ -31,37 +31,6 @@ constexpr double most_plinth = 0.4;      // below two levels
 constexpr double least_upper = 0.85;     // above two levels: a storey like the lower
 constexpr double most_upper = 1.4;       // with a parapet
 constexpr double least_of_storey = 0.6;  // else the last level is the roof
-
-struct Level {
-  double height, area;
-};
-
-/// Heights at which so much surface is level, one for each run of slices that hold any, ascending.
-std::vector<Level> levels_of(const Mesh& mesh, int axis, double least_area) {
-  constexpr std::size_t slices = 2000;
-  const auto [low, high] = extent_of(mesh);
-  const double slice = std::max(high[axis] - low[axis], 1e-300) / slices;
-  std::array<double, slices + 1> area{}, moment{};
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    const Eigen::Vector3d twice = (q - p).cross(r - p);
-    if (!(std::abs(twice[axis]) > floor_cosine * twice.norm())) continue;
-    const double height = (p[axis] + q[axis] + r[axis]) / 3;
-    const double at = std::clamp((height - low[axis]) / slice, 0.0, static_cast<double>(slices));
-    area[static_cast<std::size_t>(at)] += 0.5 * std::abs(twice[axis]);
-    moment[static_cast<std::size_t>(at)] += 0.5 * std::abs(twice[axis]) * height;
-  }
-  std::vector<Level> levels;
-  for (std::size_t i = 0; i <= slices; ++i) {
-    double all = 0, sum = 0;
-    for (; i <= slices && area[i] > 0; ++i) {
-      all += area[i];
-      sum += moment[i];
-    }
-    if (all >= least_area && all > 0) levels.push_back({sum / all, all});
-  }
-  return levels;
-}
 
 /// The level nearest to a height, if it lies within a distance.
 const Level* level_near(const std::vector<Level>& levels, double height, double within) {
@@ -97,6 +66,15 @@ StoreyRow row_from(const std::vector<Level>& levels, const Level& first, const L
   }
 }
 
+/// Whether another level lies half way between two of a row: then each is of two storeys.
+bool skips_levels(const std::vector<Level>& levels, const StoreyRow& row) {
+  return std::any_of(levels.begin(), levels.end(), [&](const Level& level) {
+    const double storeys = (level.height - row.first) / row.storey;
+    return level.height > row.first && level.height < row.last &&
+           std::abs(storeys - std::floor(storeys) - 0.5) < half_way;
+  });
+}
+
 }  // namespace
 
 std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
@@ -125,7 +103,9 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
                          : below < most_plinth && above > least_upper && above < most_upper;
       const int count = row.floors - (above < least_of_storey ? 1 : 0);
       const bool is_slender = slender > (count < many ? most_slender : most_slender_of_many);
-      if (!is_row || count < 2 || is_slender || row.area <= most) continue;
+      if (!is_row || count < 2 || is_slender || row.area <= most || skips_levels(levels, row)) {
+        continue;
+      }
       most = row.area;
       best = EvenStoreys{row.first, row.storey, count};
     }

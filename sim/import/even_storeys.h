@@ -18,10 +18,10 @@ struct EvenStoreys {
 /// The storeys of which a mesh may consist if `axis` is up: surfaces level with respect to it, each
 /// over at least a third of the plan, at even heights (to 2 % of a storey). Above two levels
 /// lies a storey like the lower; of more, less than two heights of a storey may be left below and
-/// above (3.5 above four levels and more: a roof). Of several such rows that with most surface.
-/// None in a mesh without triangles, and in one more than three times as high as its plan is wide
-/// (4.5 times with five storeys and more): walls at even distances in a row of rooms are no floors
-/// of a tower.
+/// above (3.5 above four levels and more: a roof), and none half way between two of them. Of
+/// several such rows that with most surface. None in a mesh without triangles, and in one more than
+/// three times as high as its plan is wide (4.5 times with five storeys and more): walls at even
+/// distances in a row of rooms are no floors of a tower.
 std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis);
 
 }  // namespace vernier::sim::internal

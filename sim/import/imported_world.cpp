@@ -157,13 +157,14 @@ bool put_upright(double most_deg, Segment& segment) {
 
 }  // namespace
 
-ImportedWorld import_world(const Mesh& mesh,
+ImportedWorld import_world(const Mesh& file,
                            const ImportOptions& options,
                            const std::string& place) {
-  check(mesh, place);
+  check(file, place);
+  const Mesh mesh = with_used_vertices(file);
   ImportedWorld imported;
   ImportReport& report = imported.report;
-  report.vertices = mesh.vertices.size();
+  report.vertices = file.vertices.size();
   report.triangles = mesh.triangles.size();
   report.lines = mesh.lines.size();
   report.axes = axes_and_unit(mesh, options.up_axis, options.unit_m, place);

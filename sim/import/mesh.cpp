@@ -4,7 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "sim/import/point_grid.h"
 
@@ -27,6 +30,25 @@ MeshExtent extent_of(const Mesh& mesh) {
     extent.high = extent.high.cwiseMax(v);
   }
   return extent;
+}
+
+Mesh with_used_vertices(Mesh mesh) {
+  std::vector<char> is_used(mesh.vertices.size());
+  const auto each_end = [&](const auto& visit) {
+    for (auto& triangle : mesh.triangles) std::for_each(triangle.begin(), triangle.end(), visit);
+    for (auto& line : mesh.lines) std::for_each(line.begin(), line.end(), visit);
+  };
+  each_end([&](std::uint32_t& i) { is_used[i] = 1; });
+  std::vector<std::uint32_t> moved(mesh.vertices.size());
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!is_used[i]) continue;
+    mesh.vertices[kept] = mesh.vertices[i];
+    moved[i] = kept++;
+  }
+  mesh.vertices.resize(kept);
+  each_end([&](std::uint32_t& i) { i = moved[i]; });
+  return mesh;
 }
 
 Mesh welded(const Mesh& mesh, double within) {

@@ -36,6 +36,9 @@ struct MeshExtent {
 };
 MeshExtent extent_of(const Mesh& mesh);
 
+/// The same mesh without the vertices that no triangle and no line has.
+Mesh with_used_vertices(Mesh mesh);
+
 /// The same mesh with vertices closer than `within` made one, each the first of them. Triangles and
 /// lines that lose an end, and triangles lower than `within`, are left out.
 Mesh welded(const Mesh& mesh, double within);

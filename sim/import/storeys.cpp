@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <vector>
 
+#include "sim/import/levels.h"
 #include "sim/import/mesh.h"
 
 namespace vernier::sim::internal {
@@ -17,34 +20,57 @@ namespace {
 
 constexpr double level_m = 0.05;  // heights are told apart to this
 constexpr double lowest_wall_m = 1.5;
-constexpr double least_walls = 0.2;  // length at their lower ends, of that of the storey with most
-constexpr double least_floor = 0.1;  // level surface that faces up, of the plan's bounding box
-constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin
+constexpr double least_walls = 0.2;   // length at their lower ends, of that of the storey with most
+constexpr double least_floor = 0.25;  // level surface, of the bounding box of the walls on it
+constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin or end
 
-double plan_area(const std::vector<Polygon>& faces) {
-  if (faces.empty()) return 0;
-  Eigen::Vector3d low = faces[0][0], high = low;
-  for (const Polygon& face : faces) {
-    for (const Eigen::Vector3d& v : face) {
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
+long bin_of(double z) { return std::lround(z / level_m); }
+
+/// What lies at a height: how much, and its mean height.
+struct AtHeight {
+  double amount = 0, moment = 0;
+  void add(double much, double z) {
+    amount += much;
+    moment += much * z;
   }
-  return (high.x() - low.x()) * (high.y() - low.y());
+  double z() const { return moment / amount; }
+};
+using ByHeight = std::map<long, AtHeight>;
+
+/// Walls that begin at a height: their length, their plan's bounding box, and where those end whose
+/// upper edge is level.
+struct Walls {
+  AtHeight begin;
+  Eigen::AlignedBox2d box;
+  ByHeight level_ends;
+};
+
+/// The surfaces of a building by their heights.
+struct Surfaces {
+  ByHeight up, level;  // level surface that faces up, and all
+  std::map<long, Walls> walls;
+};
+
+/// Length of a face's edges at its upper end.
+double upper_edge(const Polygon& face, double high) {
+  double length = 0;
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const Eigen::Vector3d &a = face[i], &b = face[(i + 1) % face.size()];
+    if (std::min(a.z(), b.z()) > high - level_m) length += (b - a).norm();
+  }
+  return length;
 }
 
-}  // namespace
+void add_wall(const Polygon& face, double area, double low, double high, Surfaces& surfaces) {
+  const double length = area / (high - low);
+  Walls& walls = surfaces.walls[bin_of(low)];
+  walls.begin.add(length, low);
+  for (const Eigen::Vector3d& v : face) walls.box.extend(v.head<2>());
+  if (upper_edge(face, high) > 0.5 * length) walls.level_ends[bin_of(high)].add(length, high);
+}
 
-std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
-  struct Level {
-    double amount = 0, moment = 0;
-    void add(double much, double z) {
-      amount += much;
-      moment += much * z;
-    }
-    double z() const { return moment / amount; }
-  };
-  std::map<long, Level> floors, walls;
+Surfaces surfaces_of(const std::vector<Polygon>& faces) {
+  Surfaces surfaces;
   for (const Polygon& face : faces) {
     Eigen::Vector3d twice = Eigen::Vector3d::Zero();
     double low = face[0].z(), high = low, middle = 0;
@@ -57,54 +83,74 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
     const double area = 0.5 * twice.norm();
     if (!(area > 0)) continue;
     const double up = 0.5 * twice.z() / area;
-    if (up > 0.98) {
-      floors[std::lround(middle / level_m)].add(area, middle);
-    } else if (std::abs(up) < 0.2 && high - low >= lowest_wall_m) {
-      walls[std::lround(low / level_m)].add(area / (high - low), low);
+    if (std::abs(up) > floor_cosine) {
+      surfaces.level[bin_of(middle)].add(area, middle);
+      if (up > 0) surfaces.up[bin_of(middle)].add(area, middle);
+    } else if (std::abs(up) < wall_cosine && high - low >= lowest_wall_m) {
+      add_wall(face, area, low, high, surfaces);
     }
   }
-  // Those with most walls first, so that a plinth or the ground around a house, where a few of its
-  // walls begin, does not stand for the storey above it.
-  std::vector<Level> by_amount;
-  for (const auto& [index, wall] : walls) by_amount.push_back(wall);
+  return surfaces;
+}
+
+/// The largest of the levels at a height that are floors for such walls; null without one.
+const AtHeight* floor_at(const ByHeight& levels, double z, const Walls& walls) {
+  const AtHeight* found = nullptr;
+  double largest = least_floor * walls.box.volume();
+  for (const auto& [bin, level] : levels) {
+    const double above = level.z() - z;
+    if (above < -floor_below_m || above > floor_above_m || level.amount < largest) continue;
+    largest = level.amount;
+    found = &level;
+  }
+  return found;
+}
+
+/// Whether most of such walls end level, below level surface: gables do not, nor do parapets.
+bool carry_a_ceiling(const Walls& walls, const Surfaces& surfaces) {
+  double carrying = 0;
+  for (const auto& [bin, end] : walls.level_ends) {
+    if (floor_at(surfaces.level, end.z(), walls) != nullptr) carrying += end.amount;
+  }
+  return carrying > 0.5 * walls.begin.amount;
+}
+
+/// The heights at which most walls begin, those with most first, so that a plinth or the ground
+/// around a house, where a few of its walls begin, does not stand for the storey above it.
+std::vector<Walls> starts_of(const Surfaces& surfaces) {
+  std::vector<Walls> by_amount, starts;
+  for (const auto& [bin, walls] : surfaces.walls) by_amount.push_back(walls);
   std::stable_sort(by_amount.begin(), by_amount.end(),
-                   [](const Level& a, const Level& b) { return a.amount > b.amount; });
-  const double plan = plan_area(faces);
-  std::vector<double> starts;
-  struct Storey {
-    double height;
-    bool has_floor;
-  };
-  std::vector<Storey> storeys;
-  for (const Level& wall : by_amount) {
-    if (wall.amount < least_walls * by_amount[0].amount) break;
-    if (std::any_of(starts.begin(), starts.end(),
-                    [&](double start) { return std::abs(wall.z() - start) < lowest_storey_m; })) {
-      continue;
-    }
-    starts.push_back(wall.z());
-    Storey storey{wall.z(), false};
-    double largest = least_floor * plan;
-    for (const auto& [level, floor] : floors) {
-      const double above = floor.z() - wall.z();
-      if (above < -floor_below_m || above > floor_above_m || floor.amount < largest) continue;
-      largest = floor.amount;
-      storey = {floor.z(), true};
-    }
-    storeys.push_back(storey);
+                   [](const Walls& a, const Walls& b) { return a.begin.amount > b.begin.amount; });
+  for (const Walls& walls : by_amount) {
+    if (walls.begin.amount < least_walls * by_amount[0].begin.amount) break;
+    const bool is_near = std::any_of(starts.begin(), starts.end(), [&](const Walls& start) {
+      return std::abs(walls.begin.z() - start.begin.z()) < lowest_storey_m;
+    });
+    if (!is_near) starts.push_back(walls);
   }
-  // Walls that begin without a floor above the highest floor are gables and parapets; below it they
-  // are those of a storey without a slab.
-  double highest_floor = -std::numeric_limits<double>::infinity();
-  for (const Storey& storey : storeys) {
-    if (storey.has_floor) highest_floor = std::max(highest_floor, storey.height);
-  }
-  std::vector<double> heights;
-  for (const Storey& storey : storeys) {
-    if (storey.height <= highest_floor || !std::isfinite(highest_floor)) {
-      heights.push_back(storey.height);
+  return starts;
+}
+
+}  // namespace
+
+std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
+  const Surfaces surfaces = surfaces_of(faces);
+  std::vector<double> heights, without_floor;
+  for (const Walls& walls : starts_of(surfaces)) {
+    if (const AtHeight* floor = floor_at(surfaces.up, walls.begin.z(), walls)) {
+      heights.push_back(floor->z());
+    } else if (carry_a_ceiling(walls, surfaces)) {
+      heights.push_back(walls.begin.z());
+    } else {
+      without_floor.push_back(walls.begin.z());
     }
   }
+  // Below the highest floor they are those of a storey without a slab; above it gables.
+  const double highest = heights.empty() ? std::numeric_limits<double>::infinity()
+                                         : *std::max_element(heights.begin(), heights.end());
+  std::copy_if(without_floor.begin(), without_floor.end(), std::back_inserter(heights),
+               [&](double height) { return height <= highest; });
   std::sort(heights.begin(), heights.end());
   return heights;
 }

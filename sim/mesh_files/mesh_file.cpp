@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/mesh_files/mesh_file.h"
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "calib/base/small_letters.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "sim/import/mesh.h"
@@ -15,12 +16,7 @@ namespace vernier::sim::internal {
 
 using namespace vernier::internal;
 
-std::string in_small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  });
-  return text;
-}
+std::string in_small_letters(std::string text) { return small_letters(std::move(text)); }
 
 Mesh read_mesh(const std::filesystem::path& file, const MeshSelection& selection) {
   const std::string ending = in_small_letters(file.extension().string());

@@ -57,35 +57,63 @@ Points flatten(const std::vector<Eigen::Vector3d>& polygon, const Eigen::Vector3
   return points;
 }
 
-bool is_ear(const Points& points, const Loop& loop, std::size_t i) {
-  const std::size_t n = loop.size();
-  const Eigen::Vector2d &u = points[loop[(i + n - 1) % n]], &v = points[loop[i]],
-                        &w = points[loop[(i + 1) % n]];
-  for (std::size_t j = 0; j < n; ++j) {
-    const Eigen::Vector2d& p = points[loop[j]];
-    // The two ends of a cut that joins a hole are the same point twice.
-    const double same = straight_m * straight_m;
-    if ((p - u).squaredNorm() <= same || (p - v).squaredNorm() <= same ||
-        (p - w).squaredNorm() <= same) {
-      continue;
-    }
-    if (bulge(u, v, p) >= -straight_m && bulge(v, w, p) >= -straight_m &&
-        bulge(w, u, p) >= -straight_m) {
-      return false;
-    }
+/// Corners of a loop as ears, found in turn: of a corner that is none, the vertex in its way is
+/// known until that or a neighbour is clipped, so that few corners are looked at twice.
+class Ears {
+ public:
+  Ears(const Points& points, const Loop& loop)
+      : points_(points), in_the_way_(points.size(), none), is_left_(points.size()) {
+    for (const int v : loop) is_left_[v] = 1;
   }
-  return true;
-}
+
+  bool is_ear(const Loop& loop, std::size_t i) {
+    int& known = in_the_way_[loop[i]];
+    if (known == none || !is_left_[known]) known = vertex_within(loop, i);
+    return known == none;
+  }
+
+  void clip(int u, int v, int w) {
+    is_left_[v] = 0;
+    in_the_way_[u] = in_the_way_[w] = none;
+  }
+
+ private:
+  static constexpr int none = -1;
+
+  int vertex_within(const Loop& loop, std::size_t i) const {
+    const std::size_t n = loop.size();
+    const Eigen::Vector2d &u = points_[loop[(i + n - 1) % n]], &v = points_[loop[i]],
+                          &w = points_[loop[(i + 1) % n]];
+    for (const int j : loop) {
+      const Eigen::Vector2d& p = points_[j];
+      // The two ends of a cut that joins a hole are the same point twice.
+      const double same = straight_m * straight_m;
+      if ((p - u).squaredNorm() <= same || (p - v).squaredNorm() <= same ||
+          (p - w).squaredNorm() <= same) {
+        continue;
+      }
+      if (bulge(u, v, p) >= -straight_m && bulge(v, w, p) >= -straight_m &&
+          bulge(w, u, p) >= -straight_m) {
+        return j;
+      }
+    }
+    return none;
+  }
+
+  const Points& points_;
+  std::vector<int> in_the_way_;
+  std::vector<char> is_left_;
+};
 
 /// The vertex to clip: one without area, else an ear, else the most convex one (only for invalid
 /// loops).
-std::size_t vertex_to_clip(const Points& points, const Loop& loop) {
+std::size_t vertex_to_clip(const Points& points, const Loop& loop, Ears& ears) {
   std::size_t most = 0;
   double max_bulge = -1e300;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double b = bulge_at(points, loop, i);
     if (std::abs(b) <= straight_m) return i;
-    if (b > 0 && is_ear(points, loop, i)) return i;
+    if (b > 0 && ears.is_ear(loop, i)) return i;
     if (b > max_bulge) {
       most = i;
       max_bulge = b;
@@ -96,8 +124,9 @@ std::size_t vertex_to_clip(const Points& points, const Loop& loop) {
 
 std::vector<Loop> triangulate(const Points& points, Loop loop, Cuts& cuts) {
   std::vector<Loop> triangles;
+  Ears ears(points, loop);
   while (loop.size() >= 3) {
-    const std::size_t n = loop.size(), i = vertex_to_clip(points, loop);
+    const std::size_t n = loop.size(), i = vertex_to_clip(points, loop, ears);
     const int u = loop[(i + n - 1) % n], v = loop[i], w = loop[(i + 1) % n];
     if (bulge(points[u], points[v], points[w]) > straight_m) {
       triangles.push_back({u, v, w});
@@ -105,6 +134,7 @@ std::vector<Loop> triangulate(const Points& points, Loop loop, Cuts& cuts) {
     }
     if (n == 3) break;
     loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
+    ears.clip(u, v, w);
   }
   return triangles;
 }

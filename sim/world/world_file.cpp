@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world_file.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -16,6 +15,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/small_letters.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "sim/world.h"
@@ -264,10 +264,7 @@ WorldDescription parse_world(const std::string& text, const std::string& place) 
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {
-  std::string written = file.extension().string();
-  std::transform(written.begin(), written.end(), written.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  const std::string written = small_letters(file.extension().string());
   for (const char* ending : {".obj", ".ply", ".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb",
                              ".stl", ".fbx", ".3ds"}) {
     if (written != ending) continue;

@@ -52,6 +52,22 @@ TEST(ImportedWorld, RefusesWhatItsReaderRounded) {
             std::string::npos);
 }
 
+// What no face and no line has belongs to no building.
+TEST(ImportedWorld, IsTheSameWithUnusedVertices) {
+  Mesh mesh = test::house();
+  const ImportedWorld plain = import_world(mesh, {}, "m.obj");
+  mesh.vertices.insert(mesh.vertices.begin(), {{0, 0, 100}, {5000, 0, 0}});
+  mesh.vertices.emplace_back(0, -700, 3);
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& i : triangle) i += 2;
+  }
+  const ImportedWorld other = import_world(mesh, {}, "m.obj");
+  EXPECT_EQ(other.report.axes.unit_m, 1);
+  EXPECT_EQ(other.report.vertices, plain.report.vertices + 3);
+  EXPECT_EQ(other.world.loose.segments_m, plain.world.loose.segments_m);
+  EXPECT_EQ(other.report.moved_m, plain.report.moved_m);
+}
+
 // Property: unit, axis, and where a building stands change nothing but the plan's origin.
 TEST(ImportedWorld, IsTheSameInAnyUnitAndAxis) {
   const ImportedWorld plain = import_world(test::house(), {}, "m.obj");

@@ -9,8 +9,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -116,13 +118,15 @@ TEST(PlyFile, SaysWhatIsWrong) {
   for (int i = 0; i < 3000; ++i) nothing.insert(nothing.find("end_header"), "element e 12000000\n");
   EXPECT_EQ(said_of("a.ply", nothing), "");
   EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 7"),
-            "a.ply: names a vertex that it does not have; export it again");
+            "a.ply:19: face 0 names vertex 7, and there are 4; export it again");
   EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 -1"),
-            "a.ply: names a vertex that it does not have; export it again");
+            "a.ply:19: face 0 names vertex -1, and there are 4; export it again");
+  EXPECT_EQ(with("\n1 3\n", "\n1 4\n"),
+            "a.ply:20: edge 0 names vertex 4, and there are 4; export it again");
   EXPECT_EQ(with("1 1 0 9", "1 nan 0 9"),
             "a.ply: vertex 2 is not finite; correct it, or export again");
   EXPECT_EQ(with("1 1 0 9", "1 one 0 9"),
-            "a.ply: holds a word where a number belongs; export it again");
+            "a.ply:17: vertex 2 has a word where a number belongs; export it again");
   // Cut anywhere it is refused, or nothing of its content is missing.
   for (std::size_t size = 0; size + 1 < text.size(); ++size) {
     EXPECT_NE(said_of("a.ply", text.substr(0, size)), "") << size;
@@ -187,7 +191,38 @@ TEST(PlyFile, SaysToWhatItsFloatsAreRounded) {
   for (int i = 0; i < 2001; ++i) corners += " " + std::to_string(i % 4);
   text.replace(at, 9, corners);
   text.replace(text.find("uchar int vertex_indices"), 5, "int");
-  EXPECT_EQ(said_of("a.ply", text), "a.ply: has a face of 2001 corners; export it in triangles");
+  EXPECT_EQ(said_of("a.ply", text),
+            "a.ply: has a face of 2001 corners, face 0; export it in triangles");
+}
+
+/// Spirals of two arms, 2,000 corners each, as one face each.
+std::string spirals(int count) {
+  constexpr int corners = 2000;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 2000\nproperty float x\n"
+      "property float y\nproperty float z\nelement face " +
+      std::to_string(count) + "\nproperty list int int vertex_indices\nend_header\n";
+  for (int i = 0; i < corners; ++i) {
+    const bool is_back = i >= corners / 2;
+    const double turn = 0.05 * (is_back ? corners - 1 - i : i);
+    const double radius = 1 + 0.1 * turn - (is_back ? 0.05 : 0);
+    text += std::to_string(radius * std::cos(turn)) + " " +
+            std::to_string(radius * std::sin(turn)) + " 0\n";
+  }
+  for (int face = 0; face < count; ++face) {
+    text += std::to_string(corners);
+    for (int i = 0; i < corners; ++i) text += " " + std::to_string(i);
+    text += "\n";
+  }
+  return text;
+}
+
+// Cutting them into convex pieces takes the square of their corners, and took the cube.
+TEST(PlyFile, ManyConcaveFacesAreReadWithinSeconds) {
+  const Folder folder;
+  const auto begin = std::clock();
+  EXPECT_GT(read_mesh(folder.write("s.ply", spirals(4))).triangles.size(), 7900u);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 4);
 }
 
 TEST(IfcUnit, IsReadFromTheAssignment) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,74 @@ TEST(Storeys, AreNotGables) {
   // With a floor below it, it is an attic.
   add_rectangle(mesh, {-0.1, -0.1, 2.5}, {8.3, 0, 0}, {0, 3.2, 0});
   EXPECT_EQ(floor_heights_m(convex_faces(welded(mesh, 5e-4))).size(), 2u);
+}
+
+/// Adds a storey on a slab of its own size: four walls 0.2 m thick.
+void add_storey(Mesh& mesh, double x, double y, double length, double width, double z, double h) {
+  add_box(mesh, {x, y, z - 0.25}, {x + length, y + width, z});
+  const auto wall = [&](double x0, double y0, double x1, double y1) {
+    add_box(mesh, {x0, y0, z}, {x1, y1, z + h - 0.25});
+  };
+  wall(x, y, x + length, y + 0.2);
+  wall(x, y + width - 0.2, x + length, y + width);
+  wall(x, y, x + 0.2, y + width);
+  wall(x + length - 0.2, y, x + length, y + width);
+}
+
+std::vector<double> floors_of(const Mesh& mesh) {
+  return floor_heights_m(convex_faces(welded(mesh, 5e-4)));
+}
+
+void expect_floors(const Mesh& mesh, const std::vector<double>& expected) {
+  const std::vector<double> floors = floors_of(mesh);
+  ASSERT_EQ(floors.size(), expected.size());
+  for (std::size_t i = 0; i < floors.size(); ++i) EXPECT_NEAR(floors[i], expected[i], 0.01);
+}
+
+// A floor is measured by the walls on it, not by the ground around the house.
+TEST(Storeys, AreFoundOnALargePlotAndOnAPodium) {
+  for (const double plot : {20.0, 34.0, 70.0, 300.0}) {
+    Mesh mesh;
+    add_rectangle(mesh, {-plot / 2, -plot / 2, 0}, {plot, 0, 0}, {0, plot, 0});
+    for (const double z : {0.0, 3.0}) add_storey(mesh, 0, 0, 12, 9, z, 3);
+    add_box(mesh, {0, 0, 5.75}, {12, 9, 6});
+    expect_floors(mesh, {0, 3});
+    // Its gable is none.
+    for (double x = 0.5; x < 12; x += 0.5) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), {{x, 1, 6.5}, {x, 8, 6.5}, {x, 4.5, 9}});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    expect_floors(mesh, {0, 3});
+  }
+  Mesh tower;
+  add_storey(tower, 0, 0, 60, 40, 0, 4.5);
+  add_box(tower, {0, 0, 4.25}, {60, 40, 4.5});
+  for (int i = 0; i < 4; ++i) add_storey(tower, 10, 10, 15, 15, 4.5 + 3.3 * i, 3.3);
+  add_box(tower, {10, 10, 17.45}, {25, 25, 17.7});
+  expect_floors(tower, {0, 4.5, 7.8, 11.1, 14.4});
+}
+
+// A sheet that faces down is a floor too, if walls stand on it and carry another; it is none below
+// a gable or a parapet.
+TEST(Storeys, MayHaveFloorsThatFaceDown) {
+  const auto with_walls = [](double upper_m) {
+    Mesh mesh;
+    add_rectangle(mesh, {0, 0, 0}, {10, 0, 0}, {0, 8, 0});
+    // The upper walls are thinner: else they are one with the lower.
+    for (const auto& [low, high, in] : {std::tuple(0.0, 3.0, 0.0), {3.0, upper_m, 0.05}}) {
+      add_box(mesh, {in, in, low}, {10 - in, 0.2, high});
+      add_box(mesh, {in, 7.8, low}, {10 - in, 8 - in, high});
+      add_box(mesh, {in, in, low}, {0.2, 8 - in, high});
+      add_box(mesh, {9.8, in, low}, {10 - in, 8 - in, high});
+    }
+    add_rectangle(mesh, {0, 0, 3}, {0, 8, 0}, {10, 0, 0});
+    return mesh;
+  };
+  Mesh house = with_walls(6);
+  add_rectangle(house, {0, 0, 6}, {0, 8, 0}, {10, 0, 0});
+  expect_floors(house, {0, 3});
+  expect_floors(with_walls(4.8), {0});  // a parapet
 }
 
 // Walls below a floor are of a storey, also where the ground has no slab.

@@ -21,6 +21,9 @@ std::string floor_text(const RouteProposal& proposal) {
   if (proposal.level_m2 > 0) {
     text += fmt::format("; {:.0f} m2 beside it are at another level, or a hole", proposal.level_m2);
   }
+  if (proposal.open_m2 > 0) {
+    text += fmt::format("; {:.0f} m2 beside it are open to the surroundings", proposal.open_m2);
+  }
   if (proposal.is_cut_short) {
     text += fmt::format("; it ends at {} legs, the most that are proposed", proposal.route.size());
   }

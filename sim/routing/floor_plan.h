@@ -43,13 +43,15 @@ class FloorPlan {
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
   double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
   double inside_m2() const;
-  /// Of what could be inside too: rooms behind closed doors, other buildings, what may be a room or
-  /// a block. And what borders on the inside at another level: lower or a hole, or up to 0.5 m
-  /// higher.
+  /// Of what could be inside too, but has no way to it that a robot fits through: rooms behind
+  /// closed doors, other buildings, what may be a room or a block.
   double other_m2() const { return other_m2_; }
+  /// Of what borders on the inside: at another level, so lower, a hole, or a step higher; and floor
+  /// that is open to the surroundings.
   double level_m2() const { return level_m2_; }
+  double open_m2() const { return open_m2_; }
   /// Whether the inside is open to the surroundings by a gap wider than 2 m; and the width of the
-  /// gap, to about 0.3 m (0: there are no walls around).
+  /// gap, to about 0.3 m, or less where furniture narrows the way (0: there are no walls around).
   bool is_open() const { return is_open_; }
   double gap_m() const { return gap_m_; }
 
@@ -85,7 +87,7 @@ class FloorPlan {
   Enclosure enclosure_of(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const;
   std::vector<Gate> add_behind_gates(const std::vector<bool>& floor,
                                      std::vector<bool>& indoors) const;
-  /// Whether a part of the cells is open, beside what is indoors, along less than a fifth.
+  /// Whether a part of the cells is open, but to what is indoors, along less than a fifth.
   bool is_walled(const std::vector<std::size_t>& part,
                  const std::vector<bool>& cells,
                  const std::vector<bool>& indoors) const;
@@ -95,7 +97,8 @@ class FloorPlan {
   void block_below(const World& world, double top_m);
   std::vector<bool> without_floor(const std::vector<bool>& floored,
                                   const std::vector<bool>& indoors) const;
-  void add_other_levels(const World& world, std::vector<bool> levels);
+  std::vector<bool> other_levels(const World& world, const std::vector<bool>& bare) const;
+  double beside_m2(const std::vector<bool>& cells, double within_m) const;
   std::vector<bool> near(const std::vector<bool>& floored) const;
   void visit_cells(const WorldSurface& surface, const std::function<void(int, int)>& visit) const;
   /// Adds to the cells that are reached those that border on them, and takes them out of what is
@@ -118,7 +121,7 @@ class FloorPlan {
   std::vector<bool> free_, inside_;
   std::vector<float> clearance_;
   bool is_open_ = false;
-  double gap_m_ = 0, other_m2_ = 0, level_m2_ = 0;
+  double gap_m_ = 0, other_m2_ = 0, level_m2_ = 0, open_m2_ = 0;
 };
 
 }  // namespace vernier::sim::internal

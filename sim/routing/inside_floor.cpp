@@ -73,7 +73,12 @@ void FloorPlan::choose_inside(const World& world) {
     parts.insert(parts.end(), open_parts.begin(), open_parts.end());
   }
   take_largest(parts, has_room, gates);
-  add_other_levels(world, bare);
+  // The robot keeps its radius, in cells, from an edge.
+  level_m2_ = beside_m2(other_levels(world, bare), 2 * cell_m);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    open[i] = free_[i] && floored[i] && !inside_[i] && !indoors[i];
+  }
+  open_m2_ = beside_m2(open, cell_m);
 }
 
 /// Makes the largest part that is as large as a room the inside, a solid body only if there is
@@ -188,7 +193,8 @@ bool FloorPlan::has_own_floor(const std::vector<std::size_t>& part,
 }
 
 /// Adds floor that lies behind gaps wider than a door, and is open along less than a fifth of its
-/// outline: of a square room, four fifths of a side. Niches and lanes are open further.
+/// outline: of a square room, four fifths of a side. Niches are open further. The gaps are
+/// returned.
 std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>& floor,
                                                          std::vector<bool>& indoors) const {
   std::vector<bool> left(free_.size());
@@ -200,16 +206,21 @@ std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>
   const std::vector<std::vector<std::size_t>> all = parts_of(left);
   if (std::none_of(all.begin(), all.end(), is_room)) return {};
   std::vector<Gate> gates;
+  const std::vector<bool> rooms = indoors;
   const std::vector<float> closing = closing_gaps_m();
   for (double free_m = widest_gap_m + gap_step_m; free_m <= widest_gate_m; free_m += gap_step_m) {
     std::vector<bool> cells(free_.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      cells[i] = left[i] && !indoors[i] && closing[i] <= static_cast<float>(free_m);
+      cells[i] = left[i] && closing[i] <= static_cast<float>(free_m);
     }
     for (const std::vector<std::size_t>& part : parts_of(cells)) {
-      if (!is_room(part) || !is_walled(part, cells, indoors)) continue;
-      for (const std::size_t i : part) indoors[i] = true;
-      gates.push_back({part[0], gap_into(part, closing)});
+      if (!is_room(part) || !is_walled(part, cells, rooms)) continue;
+      std::vector<std::size_t> added;  // to what is enclosed by narrower gaps
+      for (const std::size_t i : part) {
+        if (!indoors[i]) added.push_back(i);
+        indoors[i] = true;
+      }
+      if (2 * added.size() > part.size()) gates.push_back({added[0], gap_into(part, closing)});
     }
   }
   return gates;
@@ -223,10 +234,11 @@ bool FloorPlan::is_walled(const std::vector<std::size_t>& part,
   for (const std::size_t i : part) {
     for (const auto& [dx, dy] : four_sides) {
       const int x = column_of(i) + dx, y = row_of(i) + dy;
-      const std::size_t next = has(x, y) ? index(x, y) : i;
-      if (next != i && (cells[next] || indoors[next])) continue;
+      const bool is_beyond = !has(x, y);  // the plan
+      const std::size_t next = is_beyond ? i : index(x, y);
+      if (!is_beyond && cells[next]) continue;
       ++all;
-      open += free_[next];
+      open += is_beyond || (free_[next] && !indoors[next]);
     }
   }
   return open * one_in < all;
@@ -273,24 +285,29 @@ std::vector<bool> FloorPlan::without_floor(const std::vector<bool>& floored,
   return bare;
 }
 
-/// Adds up what borders on the inside, as large as a room: holes, and floor that is a little
-/// higher.
-void FloorPlan::add_other_levels(const World& world, std::vector<bool> levels) {
+/// What has no floor, and floor that is a step higher.
+std::vector<bool> FloorPlan::other_levels(const World& world, const std::vector<bool>& bare) const {
   constexpr double low_m = 0.02, high_m = 0.2;  // a step, not a seat
-  constexpr float beside_m = 0.4f;              // the robot's radius from an edge, in cells
-  const std::vector<bool> higher = over_floor(world, low_m, high_m);
+  std::vector<bool> levels = over_floor(world, low_m, high_m);
+  for (std::size_t i = 0; i < free_.size(); ++i) levels[i] = bare[i] || (levels[i] && !free_[i]);
+  return levels;
+}
+
+/// How much of some cells is as large as a room and comes so near to the inside.
+double FloorPlan::beside_m2(const std::vector<bool>& cells, double within_m) const {
+  const auto nearest_m = static_cast<float>(within_m + cell_m / 4);  // whatever is rounded
   std::vector<bool> elsewhere(free_.size());
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    levels[i] = levels[i] || (higher[i] && !free_[i]);
-    elsewhere[i] = !inside_[i];
-  }
+  for (std::size_t i = 0; i < free_.size(); ++i) elsewhere[i] = !inside_[i];
   const std::vector<float> away = distances_to_others(elsewhere, true);
-  for (const std::vector<std::size_t>& part : parts_of(levels)) {
+  const std::vector<float> clearances = distances_to_others(cells);
+  double sum_m2 = 0;
+  for (const std::vector<std::size_t>& part : parts_of(cells)) {
     if (size_m2(part) < least_room_m2) break;
     const bool is_beside =
-        std::any_of(part.begin(), part.end(), [&](std::size_t i) { return away[i] <= beside_m; });
-    if (is_beside) level_m2_ += size_m2(part);
+        std::any_of(part.begin(), part.end(), [&](std::size_t i) { return away[i] <= nearest_m; });
+    if (is_beside && holds_a_robot(part, clearances)) sum_m2 += size_m2(part);
   }
+  return sum_m2;
 }
 
 /// What has a floor, or lies by it: the floors of two rooms may leave a gap below the wall between

@@ -161,6 +161,7 @@ RouteProposal propose_route(const FloorPlan& plan, std::size_t most_legs) {
   proposal.floor_m2 = plan.inside_m2();
   proposal.other_m2 = plan.other_m2();
   proposal.level_m2 = plan.level_m2();
+  proposal.open_m2 = plan.open_m2();
   proposal.is_open = plan.is_open();
   proposal.gap_m = plan.gap_m();
   Cell any;

@@ -16,6 +16,7 @@ struct RouteProposal {
   double near_m2 = 0;         ///< of it within 2 m of the route, on the way of a robot
   double other_m2 = 0;        ///< beside it, to which the robot has no way: behind closed doors
   double level_m2 = 0;        ///< beside it, at another level: lower, a hole, or a step higher
+  double open_m2 = 0;         ///< beside it, left out since it is open to the surroundings
   bool is_cut_short = false;  ///< it has as many legs as a route may have, and parts are left
   bool is_open = false;       ///< the floor of the route is open to the surroundings
   double gap_m = 0;           ///< by a gap about so wide; 0: there are no walls around

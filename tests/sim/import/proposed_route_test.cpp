@@ -224,6 +224,17 @@ Mesh hall(double gate_m, bool has_door) {
   return mesh;
 }
 
+// Property: shelves that make the hall narrow, so that most of it is enclosed by gaps of 2 m, do
+// not make the floor at its gate a part of the outside.
+TEST(ProposedRoute, IsInAllOfAHallWithShelves) {
+  Mesh mesh = hall(4.2, true);
+  for (const double y : {3.5, 6.0, 8.5}) add_box(mesh, {2, y, 0}, {26, y + 0.6, 2});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_NEAR(proposal.gap_m, 4.2, 0.7);  // shelves close most of the hall to less already
+  EXPECT_TRUE(enters(proposal, 8, 0.2, 14, 3));
+  EXPECT_NEAR(proposal.floor_m2, 28 * 16 - 3 * 24 * 0.6 - 3 * 50 * 0.15, 60);
+}
+
 // Property: a hall with a wide gate is not given up for a small room that is enclosed.
 TEST(ProposedRoute, IsInAHallWithAGateBesideAnEnclosedRoom) {
   for (const double gate_m : {2.6, 5.0, 7.0}) {
@@ -248,6 +259,7 @@ TEST(ProposedRoute, StaysInAHouseBesideANiche) {
   const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
   EXPECT_FALSE(proposal.is_open);
   EXPECT_NEAR(proposal.floor_m2, 8 * 2.7, 4);
+  EXPECT_NEAR(proposal.open_m2, 32 * 27 - 8.3 * 3.2, 30);
 }
 
 // Whether a closed house of sheets is a block cannot be known: it is the larger part here.

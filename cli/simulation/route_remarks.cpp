@@ -18,6 +18,15 @@ std::string floor_text(const RouteProposal& proposal) {
     text += fmt::format("; {:.0f} m2 are not connected with it by a way of {:g} m",
                         proposal.other_m2, 2 * sim::internal::robot_radius_m);
   }
+  if (proposal.level_m2 > 0) {
+    text += fmt::format("; {:.0f} m2 beside it are at another level, or a hole", proposal.level_m2);
+  }
+  if (proposal.open_m2 > 0) {
+    text += fmt::format("; {:.0f} m2 beside it are open to the surroundings", proposal.open_m2);
+  }
+  if (proposal.is_cut_short) {
+    text += fmt::format("; it ends at {} legs, the most that are proposed", proposal.route.size());
+  }
   return text;
 }
 
@@ -26,8 +35,8 @@ std::string open_floor_text(const RouteProposal& proposal) {
   const double widest_m = sim::internal::FloorPlan::widest_gap_m;
   if (proposal.gap_m == 0) {
     return fmt::format(
-        "no floor is enclosed by walls without gaps of {:g} m and more; the route "
-        "is on open floor; if it should be in a room, close its gaps, or give [[route]] points_m",
+        "the route is on open floor without walls around; if it should be in a room, close its "
+        "gaps of {:g} m and more, open a door if it is closed, or give [[route]] points_m",
         widest_m);
   }
   return fmt::format(

@@ -235,7 +235,7 @@ void route(const RouteOptions& options, Session& session) {
   if (const std::string open = open_floor_text(proposal); !open.empty()) {
     session.warn(file.string() + ": " + open);
   }
-  if (proposal.other_m2 > 0) session.info(file.string() + ": " + floor_text(proposal));
+  session.info(file.string() + ": " + floor_text(proposal));
   description.route = proposal.route;
   const World world = build_world(description);
   OutputFiles outputs;

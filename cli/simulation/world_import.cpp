@@ -274,7 +274,9 @@ void run(ImportArguments arguments, Session& session) {
        {"legs", world.route.size()},
        {"floor_m2", proposal.floor_m2},
        {"floor_near_route_m2", proposal.near_m2},
-       {"floor_cut_off_m2", proposal.other_m2}},
+       {"floor_cut_off_m2", proposal.other_m2},
+       {"floor_at_other_levels_m2", proposal.level_m2},
+       {"floor_open_m2", proposal.open_m2}},
       fmt::format("{}: {}, {} triangles and {} lines\n"
                   "  {} is up ({}), a unit is {:g} m ({}); {}\n{}"
                   "  {} edges, of them {} in other storeys and {} shorter than {:g} m{}\n"

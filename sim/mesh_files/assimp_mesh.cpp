@@ -111,7 +111,10 @@ class SceneReader {
     return in_small_letters(scene_.mMaterials[part.mMaterialIndex]->GetName().C_Str());
   }
 
+  /// Where a node mirrors, the corners of its triangles are named the other way round, so that they
+  /// face as before.
   void add_part(const aiMesh& part, const aiMatrix4x4& T, Mesh& mesh) const {
+    const bool is_mirrored = T.Determinant() < 0;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (unsigned v = 0; v < part.mNumVertices; ++v) {
       const aiVector3D at = T * part.mVertices[v];
@@ -127,6 +130,7 @@ class SceneReader {
       if (face.mNumIndices == 2) mesh.lines.push_back({first + v[0], first + v[1]});
       if (face.mNumIndices == 3) {
         mesh.triangles.push_back({first + v[0], first + v[1], first + v[2]});
+        if (is_mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
       }
     }
     if (mesh.triangles.size() > most_triangles || mesh.vertices.size() > 4 * most_triangles) {

@@ -2,79 +2,81 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/routing/closed_bodies.h"
 
-#include <algorithm>
-#include <array>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
+#include <vector>
 
+#include "sim/study/standing_place.h"
+#include "sim/visibility/box_tree.h"
 #include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
 
-namespace {
-
-/// Whether a polygon, seen along an axis, lies around a point (even-odd rule).
-bool surrounds(const std::vector<Eigen::Vector3d>& polygon, const Eigen::Vector3d& at, int axis) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  bool is_inside = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a[v] > at[v]) == (b[v] > at[v])) continue;
-    if (at[u] < a[u] + (at[v] - a[v]) / (b[v] - a[v]) * (b[u] - a[u])) is_inside = !is_inside;
-  }
-  return is_inside;
-}
-
-}  // namespace
-
 ClosedBodies::ClosedBodies(const World& world) {
+  std::vector<Eigen::AlignedBox3d> boxes;
   for (const WorldSurface& surface : world.surfaces) {
     const PolygonPlane plane = polygon_plane(surface.polygon_m);
     if (plane.normal.isZero()) continue;
-    Face face{plane.normal, surface.polygon_m[0], surface.polygon_m[0], plane.distance_m,
-              &surface.polygon_m};
-    for (const Eigen::Vector3d& p : surface.polygon_m) {
-      face.low_m = face.low_m.cwiseMin(p);
-      face.high_m = face.high_m.cwiseMax(p);
-    }
-    faces_.push_back(face);
+    faces_.push_back({plane.normal, plane.distance_m, &surface.polygon_m});
+    Eigen::AlignedBox3d& box = boxes.emplace_back();
+    for (const Eigen::Vector3d& p : surface.polygon_m) box.extend(p);
   }
+  boxes_ = BoxTree(std::move(boxes));
 }
 
-int ClosedBodies::seen_along(const Eigen::Vector3d& at_m, int axis, double sign) const {
-  constexpr double parallel = 0.05, same_m = 2e-3;
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  std::vector<std::pair<double, bool>> seen;  // how far, and whether from behind
-  for (const Face& face : faces_) {
-    if (at_m[u] < face.low_m[u] || at_m[u] > face.high_m[u] || at_m[v] < face.low_m[v] ||
-        at_m[v] > face.high_m[v] || std::abs(face.normal[axis]) < parallel) {
-      continue;
+/// Calls visit(distance, is_from_behind) for the surfaces that a ray meets.
+template <class Visit>
+void ClosedBodies::visit_along(const Eigen::Vector3d& at_m,
+                               int axis,
+                               double sign,
+                               const Visit& visit) const {
+  constexpr double parallel = 1e-6;  // to the ray, so that it does not cross
+  Eigen::AlignedBox3d ray(at_m);
+  (sign > 0 ? ray.max() : ray.min())[axis] = sign * std::numeric_limits<double>::infinity();
+  const auto meets = [&](const Eigen::AlignedBox3d& box) { return ray.intersects(box); };
+  boxes_.visit(meets, [&](int i) {
+    const Face& face = faces_[static_cast<std::size_t>(i)];
+    if (std::abs(face.normal[axis]) < parallel) return false;
+    const double far_m = sign * (face.distance_m - face.normal.dot(at_m)) / face.normal[axis];
+    if (far_m > 0 && inside_outline(at_m, *face.polygon_m, axis)) {
+      visit(far_m, sign * face.normal[axis] > 0);
     }
-    const double far = sign * (face.distance_m - face.normal.dot(at_m)) / face.normal[axis];
-    if (far <= 0 || !surrounds(*face.polygon_m, at_m, axis)) continue;
-    seen.emplace_back(far, sign * face.normal[axis] > 0);
-  }
-  std::sort(seen.begin(), seen.end());
-  for (std::size_t i = 0; i < seen.size();) {
-    std::array<bool, 2> sides{};
-    const double here = seen[i].first;
-    for (; i < seen.size() && seen[i].first - here < same_m; ++i) sides[seen[i].second] = true;
-    if (sides[0] != sides[1]) return sides[1] ? 1 : -1;
-  }
-  return 0;
+    return false;  // and go on
+  });
 }
 
-bool ClosedBodies::contain(const Eigen::Vector3d& at_m) const {
+int ClosedBodies::winding_along(const Eigen::Vector3d& at_m, int axis, double sign) const {
+  int winding = 0;
+  visit_along(at_m, axis, sign,
+              [&](double, bool is_from_behind) { winding += is_from_behind ? 1 : -1; });
+  return winding;
+}
+
+/// Whether a surface faces down at the height of the floor, unlike that of a room.
+bool ClosedBodies::has_bottom(const Eigen::Vector3d& at_m) const {
+  constexpr double floor_m = 0.05;  // less than a slab is thick
+  bool is_found = false;
+  visit_along(at_m, 2, -1, [&](double far_m, bool is_from_behind) {
+    is_found = is_found || (is_from_behind && std::abs(at_m.z() - far_m) < floor_m);
+  });
+  return is_found;
+}
+
+Enclosure ClosedBodies::enclosure(const Eigen::Vector3d& at_m) const {
   constexpr int least = 3;
-  int behind = 0;
+  int above = 0, below = 0;
   for (const auto& [axis, sign] : {std::pair(0, 1.0), {0, -1.0}, {1, 1.0}, {1, -1.0}, {2, 1.0}}) {
-    const int seen = seen_along(at_m, axis, sign);
-    if (seen < 0) return false;
-    behind += seen;
+    const int winding = winding_along(at_m, axis, sign);
+    above += winding > 0;
+    below += winding < 0;
   }
-  return behind >= least;
+  if (below >= least && above == 0) return Enclosure::inward_shell;
+  if (above < least || below > 0) return Enclosure::none;
+  return has_bottom(at_m) ? Enclosure::body : Enclosure::outward_shell;
 }
 
 }  // namespace vernier::sim::internal

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "calib/error.h"
-#include "sim/routing/closed_bodies.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility/convex_pieces.h"
@@ -22,11 +21,7 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double wide_m =
-    FloorPlan::widest_gap_m;    // a gap in the walls through which the outside comes in
 constexpr double around_m = 2;  // of the plan, around the world
-
-constexpr std::array<std::pair<int, int>, 4> four_sides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 /// Lines of a world without surfaces as what stands on the floor.
 World with_walls(const World& world, double top_m) {
@@ -74,111 +69,6 @@ FloorPlan::FloorPlan(const World& world, double eye_height_m) {
   clearance_ = distances_to_others(inside_);
 }
 
-/// Takes what is enclosed, else floor that is open to the surroundings, else the inside of a body
-/// (of a room without thickness, too, the surfaces may face outwards), else all that is free.
-void FloorPlan::choose_inside(const World& world) {
-  const std::size_t count = free_.size();
-  const std::vector<bool> outside = outdoors(wide_m);
-  std::vector<bool> indoors(count);
-  for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && !outside[i];
-  leave_out_holes(world, indoors);
-  const ClosedBodies bodies(world);
-  if (take_largest(indoors, outside, bodies)) return;
-  const std::vector<bool> floored = over_floor(world);
-  std::vector<bool> open(count);
-  for (std::size_t i = 0; i < count; ++i) open[i] = free_[i] && floored[i];
-  const ClosedBodies none(World{});
-  is_open_ = take_largest(open, outside, bodies);
-  if (!is_open_ && take_largest(indoors, outside, none)) return;
-  if (is_open_ || take_largest(open, outside, none)) {
-    is_open_ = true;
-    gap_m_ = gap_into_inside();
-    return;
-  }
-  is_open_ = true;
-  inside_ = largest_part(free_);
-}
-
-/// Makes the largest connected part of the cells that is no inside of a body the inside, if it is
-/// as large as a room, and adds up the others.
-bool FloorPlan::take_largest(const std::vector<bool>& cells,
-                             const std::vector<bool>& outside,
-                             const ClosedBodies& bodies) {
-  constexpr double least_m2 = 4;            // a room
-  constexpr double least_other_m2 = 1;      // more than what is left behind a table
-  constexpr float least_other_m = 0.3f;     // half as wide, unlike the inside of a wall
-  constexpr std::size_t most_others = 200;  // to look at, the largest first
-  constexpr double cell_m2 = cell_m * cell_m;
-  const std::vector<std::vector<std::size_t>> parts = parts_of(cells);
-  const std::vector<float> clearances = distances_to_others(cells);
-  bool is_found = false;
-  for (std::size_t n = 0; n < std::min(parts.size(), most_others); ++n) {
-    const double size_m2 = cell_m2 * static_cast<double>(parts[n].size());
-    if (size_m2 < (is_found ? least_other_m2 : least_m2)) break;
-    // A room of walls without thickness looks like a solid body from within, but for its door.
-    if (!has_way_out(parts[n], cells, outside) && is_in_body(parts[n], bodies)) continue;
-    if (is_found) {
-      const bool is_wide = std::any_of(parts[n].begin(), parts[n].end(), [&](std::size_t i) {
-        return clearances[i] >= least_other_m;
-      });
-      if (is_wide) other_m2_ += size_m2;
-      continue;
-    }
-    is_found = true;
-    inside_.assign(free_.size(), false);
-    for (const std::size_t i : parts[n]) inside_[i] = true;
-  }
-  return is_found;
-}
-
-bool FloorPlan::has_way_out(const std::vector<std::size_t>& part,
-                            const std::vector<bool>& cells,
-                            const std::vector<bool>& outside) const {
-  const auto width = static_cast<std::size_t>(width_);
-  return std::any_of(part.begin(), part.end(), [&](std::size_t i) {
-    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    return std::any_of(four_sides.begin(), four_sides.end(), [&](const auto& step) {
-      if (!has(x + step.first, y + step.second)) return false;
-      const std::size_t next = index(x + step.first, y + step.second);
-      return free_[next] && outside[next] && !cells[next];
-    });
-  });
-}
-
-/// Whether most of 20 cells of a part, evenly chosen, lie inside of bodies at the robot's height.
-bool FloorPlan::is_in_body(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const {
-  constexpr std::size_t samples = 20;
-  constexpr double height_m = 0.5;
-  const std::size_t step = std::max<std::size_t>(1, part.size() / samples);
-  std::size_t looked = 0, within = 0;
-  for (std::size_t k = step / 2; k < part.size(); k += step) {
-    const auto width = static_cast<std::size_t>(width_);
-    const Eigen::Vector2d at =
-        centre_m(static_cast<int>(part[k] % width), static_cast<int>(part[k] / width));
-    // Off the middle of the cell, lest a ray meets the edge between two surfaces.
-    within += bodies.contain({at.x() + 0.0137, at.y() + 0.0173, height_m});
-    ++looked;
-  }
-  return 2 * within > looked;
-}
-
-/// The width of the gap through which the surroundings come into half of the inside, to about
-/// 0.3 m; 0 where there are none that keep them out.
-double FloorPlan::gap_into_inside() const {
-  constexpr double step_m = 0.25, widest_m = 10;
-  for (double free_m = widest_gap_m + step_m; free_m <= widest_m; free_m += step_m) {
-    const std::vector<bool> outside = outdoors(free_m);
-    std::size_t cells = 0, kept = 0;
-    for (std::size_t i = 0; i < inside_.size(); ++i) {
-      cells += inside_[i];
-      kept += inside_[i] && !outside[i];
-    }
-    // What is free keeps the robot's radius from both posts.
-    if (2 * kept > cells) return free_m - step_m / 2 + 2 * robot_radius_m;
-  }
-  return 0;
-}
-
 /// Cells where a surface lies between the floor and the robot's top: a ceiling, a roof, a ramp.
 void FloorPlan::block_below(const World& world, double top_m) {
   constexpr double floor_m = 0.02, upright = 0.05;
@@ -193,23 +83,6 @@ void FloorPlan::block_below(const World& world, double top_m) {
   }
 }
 
-/// Where most of the inside has a floor, what has none is a stairwell or an atrium. The floors of
-/// two rooms may leave a gap below the wall between them, also in its door.
-void FloorPlan::leave_out_holes(const World& world, std::vector<bool>& indoors) const {
-  constexpr double gap_m = 0.3;
-  const std::vector<bool> floored = over_floor(world);
-  std::size_t cells = 0, with_floor = 0;
-  std::vector<bool> bare(indoors.size());
-  for (std::size_t i = 0; i < indoors.size(); ++i) {
-    cells += indoors[i];
-    with_floor += indoors[i] && floored[i];
-    bare[i] = !floored[i];
-  }
-  if (2 * with_floor < cells) return;
-  const std::vector<float> away = distances_to_others(bare, true);
-  for (std::size_t i = 0; i < indoors.size(); ++i) indoors[i] = indoors[i] && away[i] <= gap_m;
-}
-
 Eigen::Vector2d FloorPlan::centre_m(int x, int y) const {
   return low_m_ + cell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
 }
@@ -220,8 +93,7 @@ double FloorPlan::inside_m2() const {
 
 void FloorPlan::flood(std::vector<std::size_t>& reached, std::vector<bool>& left) const {
   for (std::size_t next = 0; next < reached.size(); ++next) {
-    const int x = static_cast<int>(reached[next] % static_cast<std::size_t>(width_));
-    const int y = static_cast<int>(reached[next] / static_cast<std::size_t>(width_));
+    const int x = column_of(reached[next]), y = row_of(reached[next]);
     for (const auto& [dx, dy] : four_sides) {
       if (!has(x + dx, y + dy) || !left[index(x + dx, y + dy)]) continue;
       left[index(x + dx, y + dy)] = false;
@@ -256,14 +128,13 @@ std::vector<bool> FloorPlan::outdoors(double gap_m) const {
   return reached;
 }
 
-std::vector<bool> FloorPlan::over_floor(const World& world) const {
-  constexpr double thick_m = 0.1;
+std::vector<bool> FloorPlan::over_floor(const World& world, double low_m, double high_m) const {
   std::vector<bool> floored(free_.size());
   for (const WorldSurface& surface : world.surfaces) {
     const auto [low, high] =
         std::minmax_element(surface.polygon_m.begin(), surface.polygon_m.end(),
                             [](const auto& a, const auto& b) { return a.z() < b.z(); });
-    if (high->z() > thick_m || low->z() < -thick_m) continue;
+    if (high->z() > high_m || low->z() < low_m) continue;
     visit_cells(surface, [&](int x, int y) { floored[index(x, y)] = true; });
   }
   return floored;
@@ -301,14 +172,6 @@ std::vector<std::vector<std::size_t>> FloorPlan::parts_of(const std::vector<bool
   std::stable_sort(parts.begin(), parts.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return parts;
-}
-
-std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {
-  std::vector<bool> largest(cells.size());
-  const std::vector<std::vector<std::size_t>> parts = parts_of(cells);
-  if (parts.empty()) return largest;
-  for (const std::size_t i : parts[0]) largest[i] = true;
-  return largest;
 }
 
 std::vector<float> FloorPlan::distances_to_others(const std::vector<bool>& cells,

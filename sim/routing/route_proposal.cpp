@@ -21,7 +21,6 @@ namespace {
 
 constexpr double wished_clearance_m = 0.5, least_end_clearance_m = 0.3;
 constexpr double new_leg_m = 2.5, near_m = 2;
-constexpr std::size_t most_legs = 1000;
 constexpr float unreached = std::numeric_limits<float>::infinity();
 
 struct Cell {
@@ -157,10 +156,12 @@ RouteLeg straightened(const FloorPlan& plan, const std::vector<Cell>& way) {
 
 }  // namespace
 
-RouteProposal propose_route(const FloorPlan& plan) {
+RouteProposal propose_route(const FloorPlan& plan, std::size_t most_legs) {
   RouteProposal proposal;
   proposal.floor_m2 = plan.inside_m2();
   proposal.other_m2 = plan.other_m2();
+  proposal.level_m2 = plan.level_m2();
+  proposal.open_m2 = plan.open_m2();
   proposal.is_open = plan.is_open();
   proposal.gap_m = plan.gap_m();
   Cell any;
@@ -184,7 +185,9 @@ RouteProposal propose_route(const FloorPlan& plan) {
     if (way.size() > 1) proposal.route.push_back(straightened(plan, way));
     ways.start_from(way);
     const Cell next = ways.furthest();
-    if (next.x < 0 || ways.cost_to(next) < new_leg_m || proposal.route.size() == most_legs) break;
+    if (next.x < 0 || ways.cost_to(next) < new_leg_m) break;
+    proposal.is_cut_short = proposal.route.size() == most_legs;
+    if (proposal.is_cut_short) break;
     way = ways.way_to(next);
   }
   std::size_t near = 0;

@@ -288,6 +288,39 @@ TEST(MeshFile, PartsAreLeftOutByTheirNamesAndMaterialsButNotByTheFilesName) {
   EXPECT_EQ(read_mesh(file, {{"glass", "Door"}, 0}).triangles.size(), 1u);
 }
 
+/// A tetrahedron whose faces look outwards, below a node that scales x.
+std::string tetrahedron_below(const std::string& scale) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" )"
+         R"(version="1.4.1"><asset><unit meter="1" name="meter"/><up_axis>Z_UP</up_axis></asset>)"
+         R"(<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" )"
+         R"(count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common><accessor )"
+         R"(source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" )"
+         R"(type="float"/><param name="Z" type="float"/></accessor></technique_common></source>)"
+         R"(<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles )"
+         R"(count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3)"
+         R"(</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>)"
+         R"(<visual_scene id="s"><node id="n"><matrix>)" +
+         scale +
+         R"( 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url="#g"/></node>)"
+         R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/>)"
+         R"(</scene></COLLADA>)";
+}
+
+// Property: faces look outwards below a node that mirrors too.
+TEST(MeshFile, FacesOfMirroredPartsLookOutwards) {
+  if (assimp_version().empty()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  for (const char* scale : {"1", "-1", "-2"}) {
+    const Mesh mesh = read_mesh(folder.write("m.dae", tetrahedron_below(scale)));
+    ASSERT_EQ(mesh.triangles.size(), 4u);
+    double volume = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      volume += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c])) / 6;
+    }
+    EXPECT_NEAR(volume, std::abs(std::stod(scale)) / 6, 1e-6);
+  }
+}
+
 TEST(LineList, IsReadAndSaysWhatIsWrong) {
   const Folder folder;
   const Mesh mesh =

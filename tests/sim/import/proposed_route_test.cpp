@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
 #include "sim/routing/floor_plan.h"
@@ -17,6 +21,22 @@ namespace {
 
 using test::add_box;
 using test::add_rectangle;
+
+World imported(const Mesh& mesh) {
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  return build_world(import_world(mesh, options, "m.obj").world);
+}
+
+/// Whether a place on the route is within a rectangle.
+bool enters(const RouteProposal& proposal, double x0, double y0, double x1, double y1) {
+  for (double s = 0; s < route_length_m(proposal.route); s += 0.1) {
+    const auto pose = route_point(proposal.route, s).pose;
+    if (pose.x_m > x0 && pose.x_m < x1 && pose.y_m > y0 && pose.y_m < y1) return true;
+  }
+  return false;
+}
 
 // Property: the route leads through both rooms, where a robot can stand, and each leg begins where
 // a robot gets to from the first.
@@ -57,22 +77,16 @@ TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
   add_rectangle(mesh, {0, 3, 0}, {4, 0, 0}, {0, 2, 0});
   add_rectangle(mesh, {7, 3, 0}, {5, 0, 0}, {0, 2, 0});
   add_rectangle(mesh, {9, 0, 0.8}, {3, 0, 0.4}, {0, 8, 0});  // a slope under which no robot fits
-  ImportOptions options;
-  options.up_axis = 2;
-  options.unit_m = 1;
-  const World world = build_world(import_world(mesh, options, "m.obj").world);
+  const World world = imported(mesh);
   const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
   ASSERT_GT(route_length_m(proposal.route), 8);
-  for (double s = 0; s < route_length_m(proposal.route); s += 0.1) {
-    const auto pose = route_point(proposal.route, s).pose;
-    EXPECT_FALSE(pose.x_m > 4.4 && pose.x_m < 6.6 && pose.y_m > 3.4 && pose.y_m < 4.6);
-    EXPECT_LT(pose.x_m, 9.1);
-  }
-  EXPECT_TRUE(propose_route(FloorPlan(world, 1.2)).route.size() > 0);
+  EXPECT_FALSE(enters(proposal, 4.4, 3.4, 6.6, 4.6));
+  EXPECT_FALSE(enters(proposal, 9.1, 0, 12, 8));
 }
 
-/// A plot of 30 x 20 m with two houses that are solid blocks; `has_ground_below` if the ground goes
-/// on below them. A fence 1.8 m high with a gate of this width; none for a width below 0.
+/// A plot of 30 x 20 m with two houses that are solid blocks, one of two that overlap;
+/// `has_ground_below` if the ground goes on below them. A fence 1.8 m high with a gate of this
+/// width; none for a width below 0.
 World plot(bool has_ground_below, double gate_m) {
   Mesh mesh;
   if (has_ground_below) {
@@ -86,6 +100,7 @@ World plot(bool has_ground_below, double gate_m) {
   }
   add_box(mesh, {4, 4, 0}, {13, 13, 5});
   add_box(mesh, {17, 4, 0}, {26, 13, 6});
+  add_box(mesh, {17, 10, 0}, {21, 17, 4});  // with which it is an L
   if (gate_m >= 0) {
     add_box(mesh, {0, 0, 0}, {12, 0.1, 1.8});
     add_box(mesh, {12 + gate_m, 0, 0}, {30, 0.1, 1.8});
@@ -93,10 +108,7 @@ World plot(bool has_ground_below, double gate_m) {
     add_box(mesh, {0, 0.1, 0}, {0.1, 19.9, 1.8});
     add_box(mesh, {29.9, 0.1, 0}, {30, 19.9, 1.8});
   }
-  ImportOptions options;
-  options.up_axis = 2;
-  options.unit_m = 1;
-  return build_world(import_world(mesh, options, "m.obj").world);
+  return imported(mesh);
 }
 
 // Property: on a plot the route is in the yard, never inside of a solid house, and its openness is
@@ -107,12 +119,10 @@ TEST(ProposedRoute, KeepsOutOfSolidBodies) {
       const World world = plot(has_ground_below, gate_m);
       const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
       ASSERT_GT(route_length_m(proposal.route), 60) << has_ground_below << ' ' << gate_m;
-      for (double s = 0; s < route_length_m(proposal.route); s += 0.2) {
-        const auto pose = route_point(proposal.route, s).pose;
-        EXPECT_FALSE(pose.y_m > 4 && pose.y_m < 13 && pose.x_m > 4 && pose.x_m < 26 &&
-                     !(pose.x_m > 13 && pose.x_m < 17));
-      }
-      EXPECT_NEAR(proposal.floor_m2, 600 - 162, 60);
+      EXPECT_FALSE(enters(proposal, 4, 4, 13, 13));
+      EXPECT_FALSE(enters(proposal, 17, 4, 26, 13));
+      EXPECT_FALSE(enters(proposal, 17, 10, 21, 17));
+      EXPECT_NEAR(proposal.floor_m2, 600 - 162 - 16, 60);
       EXPECT_EQ(proposal.other_m2, 0);
       EXPECT_EQ(proposal.is_open, gate_m < 0 || gate_m > 2);
       EXPECT_NEAR(proposal.gap_m, gate_m > 2 ? gate_m : 0, 0.3);
@@ -147,11 +157,7 @@ Mesh house_of_sheets(double door_m) {
 
 // What has a door is no solid body, though its walls look like the outside of one.
 TEST(ProposedRoute, IsInAHouseOfSheetsWithADoor) {
-  ImportOptions options;
-  options.up_axis = 2;
-  options.unit_m = 1;
-  const RouteProposal proposal = propose_route(
-      FloorPlan(build_world(import_world(house_of_sheets(0.9), options, "m.obj").world), 1.2));
+  const RouteProposal proposal = propose_route(FloorPlan(imported(house_of_sheets(0.9)), 1.2));
   EXPECT_FALSE(proposal.is_open);
   EXPECT_NEAR(proposal.floor_m2, 48 - 4, 4);
 }
@@ -163,11 +169,7 @@ TEST(ProposedRoute, SaysHowARoomWithoutThicknessIsOpen) {
   for (int i = 0; i < 4; ++i) {
     mesh.vertices[i] = Eigen::Vector3d(i == 1 || i == 2 ? 8 : 0, i < 2 ? 0 : 6, 0);
   }
-  ImportOptions options;
-  options.up_axis = 2;
-  options.unit_m = 1;
-  const RouteProposal proposal =
-      propose_route(FloorPlan(build_world(import_world(mesh, options, "m.obj").world), 1.2));
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
   EXPECT_TRUE(proposal.is_open);
   EXPECT_NEAR(proposal.gap_m, 3, 0.3);
 }
@@ -185,16 +187,147 @@ TEST(ProposedRoute, SaysWhatIsCutOff) {
       0);
 }
 
+// A block with its faces turned inwards may be a room: the yard is larger, and the block is told.
+TEST(ProposedRoute, KeepsOutOfASmallerBlockTurnedInsideOut) {
+  for (const double gate_m : {-1.0, 0.0, 2.8}) {
+    Mesh mesh;
+    add_box(mesh, {8, 5, 0}, {20, 13, 4});
+    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    add_rectangle(mesh, {0, 0, 0}, {26, 0, 0}, {0, 18, 0});
+    if (gate_m >= 0) {
+      add_box(mesh, {0, 0, 0}, {5, 0.1, 2});
+      add_box(mesh, {5 + gate_m, 0, 0}, {26, 0.1, 2});
+      add_box(mesh, {0, 17.9, 0}, {26, 18, 2});
+      add_box(mesh, {0, 0.1, 0}, {0.1, 17.9, 2});
+      add_box(mesh, {25.9, 0.1, 0}, {26, 17.9, 2});
+    }
+    const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+    EXPECT_GT(route_length_m(proposal.route), 60);
+    EXPECT_FALSE(enters(proposal, 8, 5, 20, 13)) << gate_m;
+    EXPECT_NEAR(proposal.other_m2, 96 - 5, 6) << gate_m;
+  }
+}
+
+/// A hall of 28 x 16 m on a floor of its own with a gate of this width, and a store of 5 x 4 m in
+/// its corner with a door or without.
+Mesh hall(double gate_m, bool has_door) {
+  Mesh mesh;
+  add_rectangle(mesh, {0, 0, 0}, {28, 0, 0}, {0, 16, 0});
+  add_box(mesh, {0, 0, 0}, {9, 0.2, 5});
+  add_box(mesh, {9 + gate_m, 0, 0}, {28, 0.2, 5});
+  add_box(mesh, {0, 15.8, 0}, {28, 16, 5});
+  add_box(mesh, {0, 0.2, 0}, {0.2, 15.8, 5});
+  add_box(mesh, {27.8, 0.2, 0}, {28, 15.8, 5});
+  add_box(mesh, {22, 11, 0}, {24, 11.1, 2.5});
+  add_box(mesh, {has_door ? 24.9 : 24, 11, 0}, {28, 11.1, 2.5});
+  add_box(mesh, {22, 11.1, 0}, {22.1, 15.8, 2.5});
+  return mesh;
+}
+
+// Property: shelves that make the hall narrow, so that most of it is enclosed by gaps of 2 m, do
+// not make the floor at its gate a part of the outside.
+TEST(ProposedRoute, IsInAllOfAHallWithShelves) {
+  Mesh mesh = hall(4.2, true);
+  for (const double y : {3.5, 6.0, 8.5}) add_box(mesh, {2, y, 0}, {26, y + 0.6, 2});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_NEAR(proposal.gap_m, 4.2, 0.7);  // shelves close most of the hall to less already
+  EXPECT_TRUE(enters(proposal, 8, 0.2, 14, 3));
+  EXPECT_NEAR(proposal.floor_m2, 28 * 16 - 3 * 24 * 0.6 - 3 * 50 * 0.15, 60);
+}
+
+// Property: a hall with a wide gate is not given up for a small room that is enclosed.
+TEST(ProposedRoute, IsInAHallWithAGateBesideAnEnclosedRoom) {
+  for (const double gate_m : {2.6, 5.0, 7.0}) {
+    for (const bool has_door : {false, true}) {
+      const RouteProposal proposal =
+          propose_route(FloorPlan(imported(hall(gate_m, has_door)), 1.2));
+      EXPECT_TRUE(proposal.is_open);
+      EXPECT_NEAR(proposal.gap_m, gate_m, 0.35);
+      EXPECT_NEAR(proposal.floor_m2 + proposal.other_m2, 28 * 16, 50);
+      EXPECT_NEAR(proposal.other_m2, has_door ? 0 : 5.7 * 4.7, 5) << gate_m;
+      EXPECT_EQ(enters(proposal, 22.1, 11.1, 28, 16), has_door);
+    }
+  }
+}
+
+// A niche in a wall of a house, and ground around it, are not floor behind a gate.
+TEST(ProposedRoute, StaysInAHouseBesideANiche) {
+  Mesh mesh = test::house();
+  add_rectangle(mesh, {-12, -12, 0}, {32, 0, 0}, {0, 27, 0});
+  add_box(mesh, {8.2, -4, 0}, {8.3, 0, 2.5});
+  add_box(mesh, {-0.2, -4, 0}, {-0.1, 0, 2.5});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_FALSE(proposal.is_open);
+  EXPECT_NEAR(proposal.floor_m2, 8 * 2.7, 4);
+  EXPECT_NEAR(proposal.open_m2, 32 * 27 - 8.3 * 3.2, 30);
+}
+
+// Whether a closed house of sheets is a block cannot be known: it is the larger part here.
+TEST(ProposedRoute, IsInAClosedHouseOfSheetsLargerThanItsTerrace) {
+  Mesh mesh;
+  add_rectangle(mesh, {0, 0, 0}, {9, 0, 0}, {0, 7, 0});
+  add_rectangle(mesh, {0, -2.5, 0}, {9, 0, 0}, {0, 2.5, 0});
+  add_rectangle(mesh, {0, 0, 0}, {9, 0, 0}, {0, 0, 2.6});
+  add_rectangle(mesh, {0, 7, 0}, {0, 0, 2.6}, {9, 0, 0});
+  add_rectangle(mesh, {0, 0, 0}, {0, 0, 2.6}, {0, 7, 0});
+  add_rectangle(mesh, {9, 0, 0}, {0, 7, 0}, {0, 0, 2.6});
+  add_rectangle(mesh, {0, 0, 2.6}, {9, 0, 0}, {0, 7, 0});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_FALSE(proposal.is_open);
+  EXPECT_NEAR(proposal.floor_m2, 63 - 4, 4);
+  EXPECT_NEAR(proposal.other_m2, 9 * 2.5, 4);
+  EXPECT_FALSE(enters(proposal, 0, -3, 9, 0));
+}
+
+// On ground that goes on below its walls it is taken for a block.
+TEST(ProposedRoute, KeepsOutOfAClosedHouseOfSheetsOnGround) {
+  const RouteProposal proposal = propose_route(FloorPlan(imported(house_of_sheets(0)), 1.2));
+  EXPECT_TRUE(proposal.is_open);
+  EXPECT_FALSE(enters(proposal, 0, 0, 8, 6));
+}
+
+// A room of which a part is lower, or higher.
+TEST(ProposedRoute, SaysWhatIsAtAnotherLevel) {
+  for (const double level_m : {-0.18, 0.0, 0.18}) {
+    Mesh mesh;
+    add_rectangle(mesh, {0, 0, 0}, {8, 0, 0}, {0, 7, 0});
+    add_rectangle(mesh, {8, 0, level_m}, {4, 0, 0}, {0, 7, 0});
+    add_rectangle(mesh, {8, 0, std::min(0.0, level_m)}, {0, 7, 0}, {0, 0, std::abs(level_m)});
+    add_box(mesh, {-0.1, -0.1, -0.2}, {12.1, 0, 2.6});
+    add_box(mesh, {-0.1, 7, -0.2}, {12.1, 7.1, 2.6});
+    add_box(mesh, {-0.1, 0, -0.2}, {0, 7, 2.6});
+    add_box(mesh, {12, 0, -0.2}, {12.1, 7, 2.6});
+    const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+    EXPECT_NEAR(proposal.floor_m2, (level_m == 0 ? 12 : 8) * 7, 6) << level_m;
+    EXPECT_NEAR(proposal.level_m2, level_m == 0 ? 0 : 4 * 7, 4) << level_m;
+  }
+}
+
+TEST(ProposedRoute, SaysThatItIsCutShort) {
+  const FloorPlan plan(imported(hall(2.6, true)), 1.2);
+  EXPECT_FALSE(propose_route(plan).is_cut_short);
+  const RouteProposal proposal = propose_route(plan, 3);
+  EXPECT_EQ(proposal.route.size(), 3u);
+  EXPECT_TRUE(proposal.is_cut_short);
+  EXPECT_LT(proposal.near_m2, 0.7 * proposal.floor_m2);
+}
+
+// Where no floor is and nothing is enclosed, a robot would drive over nothing.
 TEST(ProposedRoute, IsEmptyWithoutFloor) {
   Mesh mesh;
   add_box(mesh, {0, 0, 0}, {0.3, 0.3, 2.5});
   add_rectangle(mesh, {0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0});
-  ImportOptions options;
-  options.unit_m = 1;
-  options.up_axis = 2;
-  const RouteProposal proposal =
-      propose_route(FloorPlan(build_world(import_world(mesh, options, "m.obj").world), 1.2));
-  EXPECT_LT(proposal.near_m2, 40);  // around the box at most
+  EXPECT_TRUE(propose_route(FloorPlan(imported(mesh), 1.2)).route.empty());
+}
+
+// Walls alone, as in a drawing, are enough; outside of them nothing is known of a floor.
+TEST(ProposedRoute, IsWithinWallsThatHaveNoFloor) {
+  Mesh mesh = hall(4, true);
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_GT(route_length_m(proposal.route), 60);
+  EXPECT_NEAR(proposal.floor_m2, 28 * 16, 50);
+  EXPECT_FALSE(enters(proposal, -3, -3, 31, -0.3));
 }
 
 }  // namespace

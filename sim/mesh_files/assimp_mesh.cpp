@@ -18,6 +18,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/small_letters.h"
 #include "calib/error.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
@@ -25,6 +26,8 @@
 #include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::small_letters;
 
 namespace {
 
@@ -71,13 +74,13 @@ class SceneReader {
  public:
   SceneReader(const aiScene& scene, const std::vector<std::string>& leave_out, std::string place)
       : scene_(scene), place_(std::move(place)) {
-    for (const std::string& word : leave_out) leave_out_.push_back(in_small_letters(word));
+    for (const std::string& word : leave_out) leave_out_.push_back(small_letters(word));
   }
 
   void add_node(const aiNode& node, const aiMatrix4x4& parent, int depth, Mesh& mesh) const {
     constexpr int deepest = 1000;
     if (depth > deepest) throw Error(place_, "is nested too deep", "export it flat");
-    const std::string name = in_small_letters(node.mName.C_Str());
+    const std::string name = small_letters(node.mName.C_Str());
     // The root has the name of the file or of its project, which no part is called by.
     if (node.mParent != nullptr && is_left_out(name)) {
       ++mesh.parts_left_out;
@@ -108,7 +111,7 @@ class SceneReader {
   /// The name of its material in small letters.
   std::string material_of(const aiMesh& part) const {
     if (part.mMaterialIndex >= scene_.mNumMaterials) return {};
-    return in_small_letters(scene_.mMaterials[part.mMaterialIndex]->GetName().C_Str());
+    return small_letters(scene_.mMaterials[part.mMaterialIndex]->GetName().C_Str());
   }
 
   /// Where a node mirrors, the corners of its triangles are named the other way round, so that they
@@ -232,7 +235,7 @@ Mesh mesh_of(const std::string& bytes, const std::string& place) {
 
 Mesh read_with_assimp(const std::filesystem::path& file,
                       const std::vector<std::string>& leave_out) {
-  const std::string ending = in_small_letters(file.extension().string());
+  const std::string ending = small_letters(file.extension().string());
   if (!Assimp::Importer().IsExtensionSupported(ending)) {
     throw Error(file.string(), "is of no known format",
                 "convert it to OBJ, PLY, DAE, IFC, glTF or a list of lines (.txt)");

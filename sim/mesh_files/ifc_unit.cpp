@@ -12,11 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/small_letters.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
-#include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::small_letters;
 
 namespace {
 
@@ -111,7 +113,7 @@ std::map<std::string_view, Entity> entities_of_units(std::string_view text) {
     const std::string_view type = trimmed(statement.substr(equals + 1, open - equals - 1));
     constexpr std::size_t longest = 40;
     if (type.size() > longest) return;
-    std::string kind = in_small_letters(std::string(type));
+    std::string kind = small_letters(std::string(type));
     if (kinds.count(kind) == 0) return;
     entities[trimmed(statement.substr(0, equals))] = {std::move(kind),
                                                       arguments_of(inside_parentheses(statement))};
@@ -162,7 +164,7 @@ class UnitReader {
 
   static bool is_of_length(const Entity& unit) {
     return unit.arguments.size() >= 2 &&
-           in_small_letters(std::string(unit.arguments[1])) == ".lengthunit.";
+           small_letters(std::string(unit.arguments[1])) == ".lengthunit.";
   }
 
   double metres_of(std::string_view name, int depth = 0) const {
@@ -170,7 +172,7 @@ class UnitReader {
     const Entity* unit = entity(name);
     if (depth > deepest || unit == nullptr || !is_of_length(*unit)) fail(name);
     if (unit->type == "ifcsiunit" && unit->arguments.size() == 4 &&
-        in_small_letters(std::string(unit->arguments[3])) == ".metre.") {
+        small_letters(std::string(unit->arguments[3])) == ".metre.") {
       return prefix_of(unit->arguments[2], name);
     }
     if (!unit->type.starts_with("ifcconversionbasedunit") || unit->arguments.size() < 4) fail(name);
@@ -194,7 +196,7 @@ class UnitReader {
         {".deca.", 10},    {".deci.", 0.1},  {".centi.", 1e-2}, {".milli.", 1e-3},
         {".micro.", 1e-6}, {".nano.", 1e-9}, {".pico.", 1e-12}, {".femto.", 1e-15},
         {".atto.", 1e-18}};
-    const auto found = prefixes.find(in_small_letters(std::string(word)));
+    const auto found = prefixes.find(small_letters(std::string(word)));
     if (found == prefixes.end()) fail(name);
     return found->second;
   }

@@ -5,7 +5,6 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "calib/base/small_letters.h"
 #include "calib/base/text_lines.h"
@@ -16,10 +15,8 @@ namespace vernier::sim::internal {
 
 using namespace vernier::internal;
 
-std::string in_small_letters(std::string text) { return small_letters(std::move(text)); }
-
 Mesh read_mesh(const std::filesystem::path& file, const MeshSelection& selection) {
-  const std::string ending = in_small_letters(file.extension().string());
+  const std::string ending = small_letters(file.extension().string());
   std::error_code fault;
   const bool is_folder = std::filesystem::is_directory(file, fault);
   if (!is_folder && !std::filesystem::is_regular_file(file, fault)) {

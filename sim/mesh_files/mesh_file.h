@@ -24,9 +24,6 @@ struct MeshSelection {
 /// where it can the line; for a selection that such a file does not allow.
 Mesh read_mesh(const std::filesystem::path& file, const MeshSelection& selection = {});
 
-/// Letters of ASCII in small ones.
-std::string in_small_letters(std::string text);
-
 /// Line tracks of LIMAP that at least so many images support, in no unit and with no axis: one file
 /// of all, or a folder of a file track_N.txt each. Whether a text file holds such tracks: its first
 /// line is a number alone.

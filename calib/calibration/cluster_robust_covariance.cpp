@@ -22,8 +22,7 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
     return {CovarianceKind::clustered, names,
             clustered_sandwich(equations, bound, frames_per_parameter)};
   }
-  return {CovarianceKind::jackknife, names,
-          small_sample_covariance(equations, bound, bound_of).matrix};
+  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound, bound_of)};
 }
 
 }  // namespace vernier::internal

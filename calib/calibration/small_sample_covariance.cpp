@@ -36,14 +36,17 @@ double ledoit_wolf_intensity(const Eigen::MatrixXd& pulls,
   return std::min(1.0, scatter / (n * n) / spread);
 }
 
-/// Shrinkage intensity of J = Σ x_f x_fᵀ towards a multiple of I for a Gaussian x, of which there
-/// are `n` (Chen, Wiesel, Eldar and Hero 2010, equation 23, "OAS").
-double oracle_approximating_intensity(const Eigen::MatrixXd& J, double n) {
-  const auto p = static_cast<double>(J.rows());
-  const double squares = J.squaredNorm(), trace2 = J.trace() * J.trace();
-  const double spread = (n + 1 - 2 / p) * (squares - trace2 / p);
+/// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target for a Gaussian x in `p` dimensions, of
+/// which there are few `draws` (Chen, Wiesel, Eldar and Hero 2010, equation 23, "OAS").
+double oracle_approximating_intensity(const Eigen::MatrixXd& J,
+                                      const Eigen::MatrixXd& target,
+                                      double p,
+                                      Eigen::Index draws) {
+  p = std::max(2.0, p);
+  const auto n = static_cast<double>(draws);
+  const double spread = (n + 1 - 2 / p) * (J - target).squaredNorm();
   if (!(spread > 0)) return 1;
-  return std::min(1.0, ((1 - 2 / p) * squares + trace2) / spread);
+  return std::min(1.0, ((1 - 2 / p) * J.squaredNorm() + J.trace() * J.trace()) / spread);
 }
 
 /// A covariance whose scale is the mean square of few pulls is too small by the variance of
@@ -56,9 +59,9 @@ double student_variance(Eigen::Index frames) {
 
 }  // namespace
 
-SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
-                                              const Eigen::MatrixXd& bound,
-                                              BoundOf bound_of) {
+Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
+                                        const Eigen::MatrixXd& bound,
+                                        BoundOf bound_of) {
   const auto p = bound.rows();
   const auto frames = static_cast<Eigen::Index>(equations.frame_information.size());
   if (frames < 3) {
@@ -76,23 +79,22 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
     pulls.colwise() -= pulls.rowwise().mean().eval();  // their sum is the prior's pull, no scatter
   }
   const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
+  const double dimensions = data_share.trace();  // that the data determine
   const Eigen::MatrixXd J = pulls * pulls.transpose();
-  SmallSampleCovariance result;
-  result.inflation = J.trace() / std::max(data_share.trace(), 1e-9);
-  const bool effects = bound_of == BoundOf::random_effects;
-  if (effects) result.inflation = std::max(1.0, result.inflation);
-  const Eigen::MatrixXd target = result.inflation * data_share;
-  Eigen::MatrixXd shrunk = target;
-  if (!effects) {
-    result.shrinkage = std::max(ledoit_wolf_intensity(pulls, J, target),
-                                oracle_approximating_intensity(J, static_cast<double>(frames - 1)));
-    shrunk =
-        student_variance(frames) * ((1 - result.shrinkage) * J + result.shrinkage * target).eval();
+  const double inflation =
+      J.trace() / std::max(dimensions, 1e-9);  // mean variance over the bound's
+  Eigen::MatrixXd shrunk;
+  if (bound_of == BoundOf::random_effects) {
+    shrunk = std::max(1.0, inflation) * data_share;
+  } else {
+    const Eigen::MatrixXd target = inflation * data_share;
+    const double alpha =
+        std::max(ledoit_wolf_intensity(pulls, J, target),
+                 oracle_approximating_intensity(J, target, dimensions, frames - 1));
+    shrunk = student_variance(frames) * ((1 - alpha) * J + alpha * target);
   }
-  shrunk += prior_share;
-  result.matrix = L * shrunk * L.transpose();
-  result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
-  return result;
+  const Eigen::MatrixXd matrix = L * (shrunk + prior_share) * L.transpose();
+  return 0.5 * (matrix + matrix.transpose());
 }
 
 }  // namespace vernier::internal

@@ -12,13 +12,7 @@ namespace vernier::internal {
 enum class BoundOf { white_noise, random_effects };
 
 /// Covariance for few views with correlated residuals within a view.
-struct SmallSampleCovariance {
-  Eigen::MatrixXd matrix;
-  double inflation = 1;  ///< mean variance relative to the bound, in the bound's metric
-  double shrinkage =
-      1;  ///< in [0, 1]: 1 is the scaled shape of the bound, 0 the scatter of the views
-};
-
+///
 /// The contribution of each view to the estimate, corrected for its leverage and shrunk towards the
 /// shape of the bound C = L Lᵀ. With H_f = Lᵀ S_f L the fraction of view f in the information (Σ
 /// H_f = I),
@@ -40,8 +34,8 @@ struct SmallSampleCovariance {
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of a few frames, is far from it in most directions: then α = 1 and tr J / p
 /// is taken as 1 where it is less.
-SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
-                                              const Eigen::MatrixXd& bound,
-                                              BoundOf bound_of = BoundOf::white_noise);
+Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
+                                        const Eigen::MatrixXd& bound,
+                                        BoundOf bound_of = BoundOf::white_noise);
 
 }  // namespace vernier::internal

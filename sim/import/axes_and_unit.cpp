@@ -203,29 +203,27 @@ std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& he
 
 using FloorsByAxis = std::array<std::optional<InnerFloors>, 3>;
 
-/// Whether so much of the walls ends at floors within the building if this axis is up, and its plan
-/// is wider than a storey is high: rooms in a row, each a box, are no storeys of a narrow tower.
-bool ends_walls(const FloorsByAxis& floors, const Eigen::Vector3d& size, int axis, double share) {
+/// Whether the plan is wider than a storey is high if this axis is up: rooms in a row, each a box,
+/// are no storeys of a narrow tower.
+bool is_wide(const FloorsByAxis& floors, const Eigen::Vector3d& size, int axis) {
   constexpr double least_width = 1.25;  // of a storey's height
-  const double width = std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
-  return floors[axis] && floors[axis]->ending >= share &&
-         width >= least_width * floors[axis]->highest;
+  return floors[axis] && std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) >=
+                             least_width * floors[axis]->highest;
 }
 
-/// Whether it may be so of any axis but this.
-bool may_end_elsewhere(const FloorsByAxis& floors, const Eigen::Vector3d& size, int axis) {
-  constexpr double doubtful = 0.6;  // of the cross-section of walls
-  return ends_walls(floors, size, (axis + 1) % 3, doubtful) ||
-         ends_walls(floors, size, (axis + 2) % 3, doubtful);
+/// Whether walls may end at floors within the building if this axis is up.
+bool may_end(const FloorsByAxis& floors, int axis) {
+  constexpr double doubtful = 0.6;  // of their cross-section
+  return floors[axis] && floors[axis]->ending >= doubtful;
 }
 
-/// The only axis along which walls end at floors within the building.
+/// The axis along which walls end at floors within the building, and along no other.
 std::optional<int> axis_of_floors(const FloorsByAxis& floors, const Eigen::Vector3d& size) {
   constexpr double nearly_all = 0.8;  // of the cross-section of walls
   for (int axis = 0; axis < 3; ++axis) {
-    if (ends_walls(floors, size, axis, nearly_all) && !may_end_elsewhere(floors, size, axis)) {
-      return axis;
-    }
+    const bool is_clear = floors[axis] && floors[axis]->ending >= nearly_all &&
+                          !may_end(floors, (axis + 1) % 3) && !may_end(floors, (axis + 2) % 3);
+    if (is_clear && is_wide(floors, size, axis)) return axis;
   }
   return {};
 }
@@ -259,9 +257,10 @@ std::optional<int> axis_by_signs(const Voted& voted,
                                  const Eigen::Vector3d& size) {
   const std::optional<int> up = voted.whole;
   if (!up || is_plate(size, *up)) return up;
-  if (voted.folded != up || may_end_elsewhere(floors, size, *up)) return {};
-  for (const std::optional<InnerFloors>& other : floors) {
-    if (floors[*up] && other && other->ending > floors[*up]->ending) return {};
+  if (voted.folded != up) return {};
+  for (const int other : {(*up + 1) % 3, (*up + 2) % 3}) {
+    if (may_end(floors, other) && is_wide(floors, size, other)) return {};
+    if (floors[*up] && floors[other] && floors[other]->ending > floors[*up]->ending) return {};
   }
   return up;
 }

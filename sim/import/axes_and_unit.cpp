@@ -48,14 +48,14 @@ std::vector<UprightFace> uprights(const Mesh& mesh, int axis) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
     const Eigen::Vector3d twice = (q - p).cross(r - p);
-    if (std::abs(twice[axis]) > 0.2 * twice.norm()) continue;
+    if (std::abs(twice[axis]) > wall_cosine * twice.norm()) continue;
     const auto [low, high] = std::minmax({p[axis], q[axis], r[axis]});
     found.push_back({low, high, twice.norm()});
   }
   if (!mesh.triangles.empty()) return found;
   for (const auto& [a, b] : mesh.lines) {
     const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b];
-    if (std::abs(q[axis] - p[axis]) < 0.98 * (q - p).norm()) continue;
+    if (std::abs(q[axis] - p[axis]) < floor_cosine * (q - p).norm()) continue;
     const auto [low, high] = std::minmax(p[axis], q[axis]);
     found.push_back({low, high, high - low});
   }
@@ -121,7 +121,7 @@ double gathered(const Mesh& mesh, int axis, const Heights& heights) {
     const Eigen::Vector3d twice = (q - p).cross(r - p);
     const double area = twice.norm();
     all += area;
-    if (std::abs(twice[axis]) > 0.98 * area) add((p[axis] + q[axis] + r[axis]) / 3, area);
+    if (std::abs(twice[axis]) > floor_cosine * area) add((p[axis] + q[axis] + r[axis]) / 3, area);
   }
   if (mesh.triangles.empty()) {
     for (const auto& [a, b] : mesh.lines) {
@@ -203,46 +203,64 @@ std::optional<int> voted_axis(const Mesh& mesh, const std::array<Heights, 3>& he
 
 using FloorsByAxis = std::array<std::optional<InnerFloors>, 3>;
 
-/// Whether walls may end at floors within the building if any axis but this is up.
-bool may_end_elsewhere(const FloorsByAxis& floors, int axis) {
-  constexpr double doubtful = 0.6;  // of their cross-section
-  for (int other = 0; other < 3; ++other) {
-    if (other != axis && floors[other] && floors[other]->ending >= doubtful) return true;
-  }
-  return false;
+/// Whether the plan is wider than a storey is high if this axis is up: rooms in a row, each a box,
+/// are no storeys of a narrow tower.
+bool is_wide(const FloorsByAxis& floors, const Eigen::Vector3d& size, int axis) {
+  constexpr double least_width = 1.25;  // of a storey's height
+  return floors[axis] && std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) >=
+                             least_width * floors[axis]->highest;
 }
 
-/// The only axis along which walls end at floors within the building, if its plan is wider than a
-/// storey is high: rooms in a row, each a box, are otherwise storeys of a narrow tower.
+/// Whether walls may end at floors within the building if this axis is up.
+bool may_end(const FloorsByAxis& floors, int axis) {
+  constexpr double doubtful = 0.6;  // of their cross-section
+  return floors[axis] && floors[axis]->ending >= doubtful;
+}
+
+/// The axis along which walls end at floors within the building, and along no other.
 std::optional<int> axis_of_floors(const FloorsByAxis& floors, const Eigen::Vector3d& size) {
-  constexpr double nearly_all = 0.8;    // of the cross-section of walls
-  constexpr double least_width = 1.25;  // of a storey's height
+  constexpr double nearly_all = 0.8;  // of the cross-section of walls
   for (int axis = 0; axis < 3; ++axis) {
-    if (!floors[axis] || floors[axis]->ending < nearly_all) continue;
-    const double width = std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
-    if (may_end_elsewhere(floors, axis) || width < least_width * floors[axis]->highest) return {};
-    return axis;
+    const bool is_clear = floors[axis] && floors[axis]->ending >= nearly_all &&
+                          !may_end(floors, (axis + 1) % 3) && !may_end(floors, (axis + 2) % 3);
+    if (is_clear && is_wide(floors, size, axis)) return axis;
   }
   return {};
 }
 
-/// The axis for which the signs of the whole building speak, unless those of its storeys, folded
-/// into one, speak for another, or more of its walls end at floors along another.
-std::optional<int> axis_by_signs(const Mesh& mesh, const FloorsByAxis& floors) {
+/// Whether a building is low and wide: hardly any is so deep, and so many times as high and long.
+bool is_plate(const Eigen::Vector3d& size, int axis) {
+  constexpr double times = 5;
+  return std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) > times * size[axis];
+}
+
+/// The axes for which the signs of a building speak, and those of its storeys folded into one.
+struct Voted {
+  std::optional<int> whole, folded;
+};
+
+Voted voted_axes(const Mesh& mesh) {
   const auto [low, high] = extent_of(mesh);
-  const Eigen::Vector3d size = high - low;
   std::array<Heights, 3> whole, folded;
   for (int axis = 0; axis < 3; ++axis) {
-    whole[axis] = folded[axis] = {low[axis], size[axis], false};
+    whole[axis] = folded[axis] = {low[axis], high[axis] - low[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
     if (storeys) folded[axis] = {storeys->first, storeys->height, true};
   }
-  const std::optional<int> up = voted_axis(mesh, whole);
-  if (!up || voted_axis(mesh, folded).value_or(*up) != *up || may_end_elsewhere(floors, *up)) {
-    return {};
-  }
-  for (const std::optional<InnerFloors>& other : floors) {
-    if (floors[*up] && other && other->ending > floors[*up]->ending) return {};
+  return {voted_axis(mesh, whole), voted_axis(mesh, folded)};
+}
+
+/// The axis for which the signs of the whole building speak; unless it is a plate, only if those of
+/// its storeys do too, and if more of its walls do not end at floors along another.
+std::optional<int> axis_by_signs(const Voted& voted,
+                                 const FloorsByAxis& floors,
+                                 const Eigen::Vector3d& size) {
+  const std::optional<int> up = voted.whole;
+  if (!up || is_plate(size, *up)) return up;
+  if (voted.folded != up) return {};
+  for (const int other : {(*up + 1) % 3, (*up + 2) % 3}) {
+    if (may_end(floors, other) && is_wide(floors, size, other)) return {};
+    if (floors[*up] && floors[other] && floors[other]->ending > floors[*up]->ending) return {};
   }
   return up;
 }
@@ -255,8 +273,10 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   const FloorsByAxis floors{inner_floors(mesh, 0), inner_floors(mesh, 1), inner_floors(mesh, 2)};
+  const Voted voted = voted_axes(with_joined_faces(mesh));
   std::optional<int> up = axis_of_floors(floors, size);
-  if (!up) up = axis_by_signs(with_joined_faces(mesh), floors);
+  // Floors seem to end at walls, too, where all are sheets and façades pass by the floors.
+  if (!up || (voted.folded != up && is_of_sheets(mesh))) up = axis_by_signs(voted, floors, size);
   if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",
               "say so with --up x, y or z");

@@ -42,14 +42,6 @@ double cut_length(const Corners& corners, int axis, double height) {
   return ends.size() == 2 ? (ends[0] - ends[1]).norm() : 0;
 }
 
-/// Whether an upright surface that has an edge in a level goes on beyond it, and nothing else meets
-/// it there; nothing if no upright surface has it.
-std::optional<bool> passes(const std::vector<Eigen::Vector3d>& normals, int axis) {
-  const auto is_upright = [&](const Eigen::Vector3d& n) { return std::abs(n[axis]) < wall_cosine; };
-  if (std::none_of(normals.begin(), normals.end(), is_upright)) return {};
-  return normals.size() == 2 && std::abs(normals[0].dot(normals[1])) > same_plane;
-}
-
 }  // namespace
 
 std::vector<Level> levels_of(const Mesh& mesh, int axis, double least_area) {
@@ -93,16 +85,43 @@ std::vector<double> inner_heights(const Mesh& mesh, int axis) {
   return heights;
 }
 
+/// The triangles of a mesh, those that it has twice once.
+std::set<std::array<std::uint32_t, 3>> different_triangles(const Mesh& mesh) {
+  std::set<std::array<std::uint32_t, 3>> different;
+  for (std::array<std::uint32_t, 3> t : mesh.triangles) {
+    std::sort(t.begin(), t.end());
+    different.insert(t);
+  }
+  return different;
+}
+
+Corners corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+double length_of(const Mesh& mesh, const Edge& edge) {
+  return (mesh.vertices[edge.first] - mesh.vertices[edge.second]).norm();
+}
+
+/// Whether faces are one surface, which has no edge between them.
+bool are_one_surface(const std::vector<Eigen::Vector3d>& normals) {
+  return normals.size() == 2 && std::abs(normals[0].dot(normals[1])) > same_plane;
+}
+
+/// Whether an upright surface that has an edge in a level goes on beyond it, and nothing else meets
+/// it there; nothing if no upright surface has it.
+std::optional<bool> passes(const std::vector<Eigen::Vector3d>& normals, int axis) {
+  const auto is_upright = [&](const Eigen::Vector3d& n) { return std::abs(n[axis]) < wall_cosine; };
+  if (std::none_of(normals.begin(), normals.end(), is_upright)) return {};
+  return are_one_surface(normals);
+}
+
 /// Share of the cross-section of upright surfaces at these heights that ends there.
 double ending_share(const Mesh& mesh, int axis, const std::vector<double>& heights) {
   double passing = 0, ending = 0;
   std::map<Edge, std::vector<Eigen::Vector3d>> normals;  // of the faces at edges in a level
-  std::set<std::array<std::uint32_t, 3>> known;
-  for (const auto& t : mesh.triangles) {
-    std::array<std::uint32_t, 3> sorted = t;
-    std::sort(sorted.begin(), sorted.end());
-    if (!known.insert(sorted).second) continue;
-    const Corners corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  for (const auto& t : different_triangles(mesh)) {
+    const Corners corners = corners_of(mesh, t);
     const Eigen::Vector3d normal = normal_of(corners);
     const auto [least, most] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
     auto level = std::lower_bound(heights.begin(), heights.end(), least - at_level_m);
@@ -121,8 +140,7 @@ double ending_share(const Mesh& mesh, int axis, const std::vector<double>& heigh
   for (const auto& [edge, at] : normals) {
     const std::optional<bool> does_pass = passes(at, axis);
     if (!does_pass) continue;
-    (*does_pass ? passing : ending) +=
-        (mesh.vertices[edge.first] - mesh.vertices[edge.second]).norm();
+    (*does_pass ? passing : ending) += length_of(mesh, edge);
   }
   return ending + passing > 0 ? ending / (ending + passing) : 0;
 }
@@ -141,6 +159,22 @@ std::optional<InnerFloors> inner_floors(const Mesh& mesh, int axis) {
     below = height;
   }
   return found;
+}
+
+bool is_of_sheets(const Mesh& mesh) {
+  constexpr double few = 0.1;  // of the length of edges
+  std::map<Edge, std::vector<Eigen::Vector3d>> normals;
+  for (const auto& t : different_triangles(mesh)) {
+    const Eigen::Vector3d normal = normal_of(corners_of(mesh, t));
+    for (int k = 0; k < 3; ++k) normals[std::minmax(t[k], t[(k + 1) % 3])].push_back(normal);
+  }
+  double all = 0, odd = 0;
+  for (const auto& [edge, at] : normals) {
+    if (are_one_surface(at)) continue;
+    all += length_of(mesh, edge);
+    if (at.size() % 2 == 1) odd += length_of(mesh, edge);
+  }
+  return odd > few * all;
 }
 
 }  // namespace vernier::sim::internal

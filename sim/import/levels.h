@@ -36,4 +36,8 @@ struct InnerFloors {
 /// another surface meets it. For a welded mesh about 10 m large.
 std::optional<InnerFloors> inner_floors(const Mesh& mesh, int axis);
 
+/// Whether a welded mesh has surfaces without thickness: an edge of a solid has two faces, or four
+/// where two solids meet, and one of a sheet often one or three.
+bool is_of_sheets(const Mesh& mesh);
+
 }  // namespace vernier::sim::internal

@@ -263,6 +263,9 @@ class PlyReader {
   /// Vertices may stand after the faces; how many there are the header says.
   std::uint32_t index(double value) const {
     constexpr double largest = std::numeric_limits<std::uint32_t>::max();
+    if (value != std::floor(value)) {
+      fail_here(fmt::format("names vertex {:g}, which is no whole number", value));
+    }
     if (!(value >= 0 && value < std::min(static_cast<double>(vertex_count_), largest))) {
       fail_here(fmt::format("names vertex {:g}, and there are {}", value, vertex_count_));
     }
@@ -271,7 +274,9 @@ class PlyReader {
 
   void read_list(const Element& element, const Property& property) {
     const double count = number(*property.count);
-    if (!(count >= 0 && count <= 1e6)) fail_here("has a list too long");
+    if (count < 0) fail_here("has a list whose count is negative");
+    if (count != std::floor(count)) fail_here("has a list whose count is no whole number");
+    if (!(count <= 1e6)) fail_here("has a list too long");
     corners_.clear();
     for (double k = 0; k < count; ++k) corners_.push_back(number(property.kind));
     const bool is_face = element.name == "face" &&

@@ -123,6 +123,14 @@ TEST(PlyFile, SaysWhatIsWrong) {
             "a.ply:19: face 0 names vertex -1, and there are 4; export it again");
   EXPECT_EQ(with("\n1 3\n", "\n1 4\n"),
             "a.ply:20: edge 0 names vertex 4, and there are 4; export it again");
+  EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2.7 3"),
+            "a.ply:19: face 0 names vertex 2.7, which is no whole number; export it again");
+  EXPECT_EQ(with("4 0 1 2 3", "3.5 0 1 2 3"),
+            "a.ply:19: face 0 has a list whose count is no whole number; export it again");
+  EXPECT_EQ(with("4 0 1 2 3", "-1 0 1 2 3"),
+            "a.ply:19: face 0 has a list whose count is negative; export it again");
+  EXPECT_EQ(with("\n1 3\n", "\n1 2.5\n"),
+            "a.ply:20: edge 0 names vertex 2.5, which is no whole number; export it again");
   EXPECT_EQ(with("1 1 0 9", "1 nan 0 9"),
             "a.ply: vertex 2 is not finite; correct it, or export again");
   EXPECT_EQ(with("1 1 0 9", "1 one 0 9"),

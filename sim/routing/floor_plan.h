@@ -18,7 +18,8 @@ namespace vernier::sim::internal {
 class FloorPlan {
  public:
   static constexpr double cell_m = 0.15;
-  static constexpr double widest_gap_m = 2;  ///< through which the surroundings do not come in
+  static constexpr double widest_gap_m = 2;    ///< through which the surroundings do not come in
+  static constexpr double widest_gate_m = 10;  ///< of halls; wider gaps are between buildings
 
   /// The robot's camera is at `eye_height_m`. Of a world without surfaces its lines on the floor
   /// and at the robot's height stand for walls. Throws Error if the floor is larger than about
@@ -66,6 +67,8 @@ class FloorPlan {
     std::size_t cell;  // behind it
     double width_m;
   };
+  /// Around the plan, so that a disc as wide as a gate can go around the world.
+  static constexpr int rim_cells = static_cast<int>(widest_gate_m / 2 / cell_m);
   static constexpr std::array<std::pair<int, int>, 4> four_sides{
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
@@ -116,7 +119,7 @@ class FloorPlan {
   std::vector<float> distances_to_others(const std::vector<bool>& cells,
                                          bool is_endless = false) const;
 
-  Eigen::Vector2d low_m_;
+  Eigen::Vector2d low_m_;  // corner within the rim
   int width_ = 0, height_ = 0;
   std::vector<bool> free_, inside_;
   std::vector<float> clearance_;

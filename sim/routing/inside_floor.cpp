@@ -20,8 +20,7 @@ namespace {
 
 constexpr double cell_m2 = FloorPlan::cell_m * FloorPlan::cell_m;
 constexpr double least_room_m2 = 4;
-constexpr double gap_step_m = 0.25;   // in which wider gaps are tried
-constexpr double widest_gate_m = 10;  // of halls; wider gaps are between buildings
+constexpr double gap_step_m = 0.25;  // in which wider gaps are tried
 
 /// Whether one can stand in a part beside its walls; the inside of a wall is narrower.
 bool holds_a_robot(const std::vector<std::size_t>& part, const std::vector<float>& clearances_m) {

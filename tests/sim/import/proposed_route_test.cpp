@@ -250,6 +250,19 @@ TEST(ProposedRoute, IsInAHallWithAGateBesideAnEnclosedRoom) {
   }
 }
 
+// Property: floor in front of a gate, as far as it goes, does not close the way around the hall.
+TEST(ProposedRoute, IsInAHallWithAnApron) {
+  for (const double apron_m : {1.0, 2.0, 6.0}) {
+    Mesh mesh = hall(5, true);
+    add_rectangle(mesh, {0, -apron_m, 0}, {28, 0, 0}, {0, apron_m, 0});
+    add_rectangle(mesh, {0, 16, 0}, {28, 0, 0}, {0, 1, 0});
+    const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+    EXPECT_NEAR(proposal.floor_m2, 28 * 16, 50) << apron_m;
+    EXPECT_NEAR(proposal.gap_m, 5, 0.35) << apron_m;
+    EXPECT_FALSE(enters(proposal, 0, 16.2, 28, 17)) << apron_m;
+  }
+}
+
 // A niche in a wall of a house, and ground around it, are not floor behind a gate.
 TEST(ProposedRoute, StaysInAHouseBesideANiche) {
   Mesh mesh = test::house();

@@ -60,8 +60,9 @@ class FloorPlan {
   struct Part {
     std::vector<std::size_t> cells;
     Enclosure enclosure;
-    bool is_wide;  // enough to stand in beside its walls
-    bool is_open;  // to the surroundings
+    bool is_wide;   // enough to stand in beside its walls
+    bool is_open;   // to the surroundings
+    bool is_block;  // perhaps: a shell on ground
   };
   struct Gate {
     std::size_t cell;  // behind it
@@ -82,7 +83,9 @@ class FloorPlan {
                                const std::vector<bool>& outside,
                                const std::vector<bool>& floored,
                                const ClosedBodies& bodies) const;
-  bool has_own_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored) const;
+  /// Whether more than half of a part does.
+  static bool has_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored);
+  bool is_on_ground(const std::vector<std::size_t>& part, const std::vector<bool>& floored) const;
   /// Whether a part of the cells borders on free floor of the surroundings that is none of them.
   bool has_way_out(const std::vector<std::size_t>& part,
                    const std::vector<bool>& cells,
@@ -99,7 +102,8 @@ class FloorPlan {
                          const std::vector<float>& closing_m);
   void block_below(const World& world, double top_m);
   std::vector<bool> without_floor(const std::vector<bool>& floored,
-                                  const std::vector<bool>& indoors) const;
+                                  const std::vector<bool>& indoors,
+                                  const std::vector<Part>& parts) const;
   std::vector<bool> other_levels(const World& world, const std::vector<bool>& bare) const;
   double beside_m2(const std::vector<bool>& cells, double within_m) const;
   std::vector<bool> near(const std::vector<bool>& floored) const;

@@ -47,10 +47,11 @@ void FloorPlan::choose_inside(const World& world) {
     indoors[i] = free_[i] && !outside[i];
     open[i] = free_[i] && floored[i];
   }
-  const std::vector<bool> bare = without_floor(floored, indoors);
-  for (std::size_t i = 0; i < free_.size(); ++i) indoors[i] = indoors[i] && !bare[i];
   const ClosedBodies bodies(world);
   std::vector<Part> parts = sorted_out(indoors, outside, floored, bodies);
+  const std::vector<bool> bare = without_floor(floored, indoors, parts);
+  for (std::size_t i = 0; i < free_.size(); ++i) indoors[i] = indoors[i] && !bare[i];
+  parts = sorted_out(indoors, outside, floored, bodies);
   const auto is_room = [](const Part& part) {
     return part.enclosure == Enclosure::none && size_m2(part.cells) >= least_room_m2;
   };
@@ -88,7 +89,7 @@ void FloorPlan::take_largest(const std::vector<Part>& parts,
   constexpr double least_other_m2 = 1;  // more than what is left behind a table
   const auto is_taken = [&](const Part& part) {
     return size_m2(part.cells) >= least_room_m2 && part.enclosure != Enclosure::body &&
-           !(has_room && part.enclosure == Enclosure::outward_shell);
+           !part.is_block && !(has_room && part.enclosure == Enclosure::outward_shell);
   };
   const auto is_less = [&](const Part& a, const Part& b) {
     return std::pair(is_taken(a), a.cells.size()) < std::pair(is_taken(b), b.cells.size());
@@ -126,10 +127,11 @@ std::vector<FloorPlan::Part> FloorPlan::sorted_out(const std::vector<bool>& cell
     // A room of walls without thickness looks like a solid body from within, but for its door.
     Enclosure enclosure =
         has_way_out(part, cells, outside) ? Enclosure::none : enclosure_of(part, bodies);
-    if (enclosure == Enclosure::outward_shell && !has_own_floor(part, floored)) {
+    if (enclosure == Enclosure::outward_shell && !has_floor(part, floored)) {
       enclosure = Enclosure::body;
     }
-    parts.push_back({std::move(part), enclosure, is_wide, false});
+    const bool is_block = enclosure == Enclosure::outward_shell && is_on_ground(part, floored);
+    parts.push_back({std::move(part), enclosure, is_wide, false, is_block});
   }
   return parts;
 }
@@ -170,16 +172,21 @@ Enclosure FloorPlan::enclosure_of(const std::vector<std::size_t>& part,
   return Enclosure::none;
 }
 
-/// Whether a part has a floor that ends at the walls around it along half of them at least, unlike
+bool FloorPlan::has_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored) {
+  const auto with_floor =
+      std::count_if(part.begin(), part.end(), [&](std::size_t i) { return floored[i]; });
+  return 2 * static_cast<std::size_t>(with_floor) > part.size();
+}
+
+/// Whether the floor of a part goes on past the walls around it along more than half of them, as
 /// ground on which a block stands.
-bool FloorPlan::has_own_floor(const std::vector<std::size_t>& part,
-                              const std::vector<bool>& floored) const {
+bool FloorPlan::is_on_ground(const std::vector<std::size_t>& part,
+                             const std::vector<bool>& floored) const {
   constexpr int beyond = 4;  // cells: past a wall and the robot's distance from its two sides
   std::vector<bool> within(free_.size());
   for (const std::size_t i : part) within[i] = true;
-  std::size_t with_floor = 0, outline = 0, ground = 0;
+  std::size_t outline = 0, ground = 0;
   for (const std::size_t i : part) {
-    with_floor += floored[i];
     for (const auto& [dx, dy] : four_sides) {
       const int x = column_of(i), y = row_of(i);
       if (has(x + dx, y + dy) && within[index(x + dx, y + dy)]) continue;
@@ -188,7 +195,7 @@ bool FloorPlan::has_own_floor(const std::vector<std::size_t>& part,
       ground += has(far_x, far_y) && floored[index(far_x, far_y)];
     }
   }
-  return 2 * with_floor > part.size() && 2 * ground <= outline;
+  return 2 * ground > outline;
 }
 
 /// Adds floor that lies behind gaps wider than a door, and is open along less than a fifth of its
@@ -269,16 +276,19 @@ double FloorPlan::gap_into(const std::vector<std::size_t>& cells,
   return std::isfinite(width_m) ? width_m : 0;
 }
 
-/// Where most of the inside has a floor, what has none is a stairwell, an atrium, or lower.
+/// What has no floor is a stairwell, an atrium, or lower, unless the file has no floors.
 std::vector<bool> FloorPlan::without_floor(const std::vector<bool>& floored,
-                                           const std::vector<bool>& indoors) const {
+                                           const std::vector<bool>& indoors,
+                                           const std::vector<Part>& parts) const {
+  constexpr std::size_t one_in = 10;  // cells with a floor; fewer are mats and sills
   std::vector<bool> bare(indoors.size());
   std::size_t cells = 0, with_floor = 0;
-  for (std::size_t i = 0; i < indoors.size(); ++i) {
-    cells += indoors[i];
-    with_floor += indoors[i] && floored[i];
+  for (const Part& part : parts) {
+    if (part.enclosure == Enclosure::body) continue;
+    cells += part.cells.size();
+    for (const std::size_t i : part.cells) with_floor += floored[i];
   }
-  if (2 * with_floor < cells) return bare;
+  if (one_in * with_floor <= cells) return bare;
   const std::vector<bool> kept = near(floored);
   for (std::size_t i = 0; i < indoors.size(); ++i) bare[i] = indoors[i] && !kept[i];
   return bare;

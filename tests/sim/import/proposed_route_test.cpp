@@ -84,6 +84,24 @@ TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
   EXPECT_FALSE(enters(proposal, 9.1, 0, 12, 8));
 }
 
+// A gallery of 3 m around a void that is larger than it.
+TEST(ProposedRoute, KeepsToAGalleryAroundAVoid) {
+  Mesh mesh;
+  add_box(mesh, {-0.1, -0.1, 0}, {20.1, 0, 2.6});
+  add_box(mesh, {-0.1, 20, 0}, {20.1, 20.1, 2.6});
+  add_box(mesh, {-0.1, 0, 0}, {0, 20, 2.6});
+  add_box(mesh, {20, 0, 0}, {20.1, 20, 2.6});
+  add_rectangle(mesh, {0, 0, 0}, {20, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 17, 0}, {20, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 3, 0}, {3, 0, 0}, {0, 14, 0});
+  add_rectangle(mesh, {17, 3, 0}, {3, 0, 0}, {0, 14, 0});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_GT(route_length_m(proposal.route), 50);
+  EXPECT_FALSE(enters(proposal, 3.4, 3.4, 16.6, 16.6));
+  EXPECT_NEAR(proposal.floor_m2, 400 - 196, 25);
+  EXPECT_NEAR(proposal.level_m2, 196, 25);
+}
+
 /// A plot of 30 x 20 m with two houses that are solid blocks, one of two that overlap;
 /// `has_ground_below` if the ground goes on below them. A fence 1.8 m high with a gate of this
 /// width; none for a width below 0.
@@ -123,7 +141,8 @@ TEST(ProposedRoute, KeepsOutOfSolidBodies) {
       EXPECT_FALSE(enters(proposal, 17, 4, 26, 13));
       EXPECT_FALSE(enters(proposal, 17, 10, 21, 17));
       EXPECT_NEAR(proposal.floor_m2, 600 - 162 - 16, 60);
-      EXPECT_EQ(proposal.other_m2, 0);
+      // Bottoms that became part of the ground around leave shells, which may be rooms.
+      EXPECT_NEAR(proposal.other_m2, has_ground_below ? 0 : 162 + 16 - 37, 10);
       EXPECT_EQ(proposal.is_open, gate_m < 0 || gate_m > 2);
       EXPECT_NEAR(proposal.gap_m, gate_m > 2 ? gate_m : 0, 0.3);
     }
@@ -292,11 +311,12 @@ TEST(ProposedRoute, IsInAClosedHouseOfSheetsLargerThanItsTerrace) {
   EXPECT_FALSE(enters(proposal, 0, -3, 9, 0));
 }
 
-// On ground that goes on below its walls it is taken for a block.
+// On ground that goes on below its walls it is not entered.
 TEST(ProposedRoute, KeepsOutOfAClosedHouseOfSheetsOnGround) {
   const RouteProposal proposal = propose_route(FloorPlan(imported(house_of_sheets(0)), 1.2));
   EXPECT_TRUE(proposal.is_open);
   EXPECT_FALSE(enters(proposal, 0, 0, 8, 6));
+  EXPECT_NEAR(proposal.other_m2, 48 - 4, 4);  // and told, since it may be a room
 }
 
 // A room of which a part is lower, or higher.

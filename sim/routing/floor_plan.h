@@ -38,8 +38,8 @@ class FloorPlan {
   /// Whether the cell belongs to the largest part of the floor that is inside: free, not over a
   /// hole in a floor that most of it has, not in a solid body, and not connected with the
   /// surroundings of the world through gaps wider than 2 m, so that outer doors may stand open.
-  /// Floor beside such rooms whose own gap is wider is inside too if walls are around four fifths
-  /// of it. In a world without rooms, free and over a floor; without a floor, walled but for a gap.
+  /// Floor whose own gap is wider is inside too if walls are around four fifths of it and it has a
+  /// ceiling where rooms have. In a world without such floor, free and over a floor.
   bool inside(int x, int y) const { return inside_[index(x, y)]; }
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
   double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
@@ -83,8 +83,6 @@ class FloorPlan {
                                const std::vector<bool>& outside,
                                const std::vector<bool>& floored,
                                const ClosedBodies& bodies) const;
-  /// Whether more than half of a part does.
-  static bool has_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored);
   bool is_on_ground(const std::vector<std::size_t>& part, const std::vector<bool>& floored) const;
   /// Whether a part of the cells borders on free floor of the surroundings that is none of them.
   bool has_way_out(const std::vector<std::size_t>& part,
@@ -92,6 +90,8 @@ class FloorPlan {
                    const std::vector<bool>& outside) const;
   Enclosure enclosure_of(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const;
   std::vector<Gate> add_behind_gates(const std::vector<bool>& floor,
+                                     const std::vector<Part>& parts,
+                                     const std::vector<bool>& below_ceiling,
                                      std::vector<bool>& indoors) const;
   /// Whether a part of the cells is open, but to what is indoors, along less than a fifth.
   bool is_walled(const std::vector<std::size_t>& part,

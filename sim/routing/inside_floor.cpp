@@ -20,6 +20,8 @@ namespace {
 
 constexpr double cell_m2 = FloorPlan::cell_m * FloorPlan::cell_m;
 constexpr double least_room_m2 = 4;
+constexpr double ceiling_m = 1.8;  // low, and above tables
+constexpr double endless_m = std::numeric_limits<double>::infinity();
 constexpr double gap_step_m = 0.25;  // in which wider gaps are tried
 
 /// Whether one can stand in a part beside its walls; the inside of a wall is narrower.
@@ -29,14 +31,21 @@ bool holds_a_robot(const std::vector<std::size_t>& part, const std::vector<float
                      [&](std::size_t i) { return clearances_m[i] >= half_m; });
 }
 
+/// Whether more than half of some cells are in a set.
+bool most_are(const std::vector<std::size_t>& cells, const std::vector<bool>& set) {
+  const auto count =
+      std::count_if(cells.begin(), cells.end(), [&](std::size_t i) { return set[i]; });
+  return 2 * static_cast<std::size_t>(count) > cells.size();
+}
+
 double size_m2(const std::vector<std::size_t>& cells) {
   return cell_m2 * static_cast<double>(cells.size());
 }
 
 }  // namespace
 
-/// Takes rooms that are enclosed, with the floor behind their gates. Where there are none, floor
-/// that is open to the surroundings; without any floor, what has walls around but for a gate.
+/// Takes rooms that are enclosed, with the floor behind their gates, or what has walls around but
+/// for a gate. Where there are none, floor that is open to the surroundings.
 /// A shell of single sheets may be a room or a block: it is inside if it is larger.
 void FloorPlan::choose_inside(const World& world) {
   constexpr double thick_m = 0.1;  // the floor's coverings, and what the file rounds
@@ -64,11 +73,12 @@ void FloorPlan::choose_inside(const World& world) {
   }
   std::vector<Part> open_parts = sorted_out(open, outside, floored, bodies);
   const bool has_open = std::any_of(open_parts.begin(), open_parts.end(), is_room);
-  std::vector<Gate> gates;
-  if (has_room || !has_open) {
-    gates = add_behind_gates(has_open ? near(floored) : free_, indoors);
-    if (!gates.empty()) parts = sorted_out(indoors, outside, floored, bodies);
-  } else {
+  const std::vector<bool> below_ceiling = over_floor(world, ceiling_m, endless_m);
+  const std::vector<Gate> gates =
+      add_behind_gates(has_open ? near(floored) : free_, parts, below_ceiling, indoors);
+  if (!gates.empty()) {
+    parts = sorted_out(indoors, outside, floored, bodies);
+  } else if (!has_room && has_open) {
     for (Part& part : open_parts) part.is_open = true;
     parts.insert(parts.end(), open_parts.begin(), open_parts.end());
   }
@@ -127,7 +137,7 @@ std::vector<FloorPlan::Part> FloorPlan::sorted_out(const std::vector<bool>& cell
     // A room of walls without thickness looks like a solid body from within, but for its door.
     Enclosure enclosure =
         has_way_out(part, cells, outside) ? Enclosure::none : enclosure_of(part, bodies);
-    if (enclosure == Enclosure::outward_shell && !has_floor(part, floored)) {
+    if (enclosure == Enclosure::outward_shell && !most_are(part, floored)) {
       enclosure = Enclosure::body;
     }
     const bool is_block = enclosure == Enclosure::outward_shell && is_on_ground(part, floored);
@@ -172,12 +182,6 @@ Enclosure FloorPlan::enclosure_of(const std::vector<std::size_t>& part,
   return Enclosure::none;
 }
 
-bool FloorPlan::has_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored) {
-  const auto with_floor =
-      std::count_if(part.begin(), part.end(), [&](std::size_t i) { return floored[i]; });
-  return 2 * static_cast<std::size_t>(with_floor) > part.size();
-}
-
 /// Whether the floor of a part goes on past the walls around it along more than half of them, as
 /// ground on which a block stands.
 bool FloorPlan::is_on_ground(const std::vector<std::size_t>& part,
@@ -199,9 +203,11 @@ bool FloorPlan::is_on_ground(const std::vector<std::size_t>& part,
 }
 
 /// Adds floor that lies behind gaps wider than a door, and is open along less than a fifth of its
-/// outline: of a square room, four fifths of a side. Niches are open further. The gaps are
-/// returned.
+/// outline: of a square room, four fifths of a side. Niches are open further. Where rooms have
+/// ceilings it has one too, unlike a garden behind its fence. The gaps are returned.
 std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>& floor,
+                                                         const std::vector<Part>& parts,
+                                                         const std::vector<bool>& below_ceiling,
                                                          std::vector<bool>& indoors) const {
   std::vector<bool> left(free_.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = free_[i] && floor[i] && !indoors[i];
@@ -212,6 +218,11 @@ std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>
   const std::vector<std::vector<std::size_t>> all = parts_of(left);
   if (std::none_of(all.begin(), all.end(), is_room)) return {};
   std::vector<Gate> gates;
+  std::vector<std::size_t> in_rooms;
+  for (const Part& part : parts) {
+    if (part.enclosure != Enclosure::none) continue;
+    in_rooms.insert(in_rooms.end(), part.cells.begin(), part.cells.end());
+  }
   const std::vector<bool> rooms = indoors;
   const std::vector<float> closing = closing_gaps_m();
   for (double free_m = widest_gap_m + gap_step_m; free_m <= widest_gate_m; free_m += gap_step_m) {
@@ -219,13 +230,16 @@ std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>
     for (std::size_t i = 0; i < cells.size(); ++i) {
       cells[i] = left[i] && closing[i] <= static_cast<float>(free_m);
     }
+    const bool has_ceilings = most_are(in_rooms, below_ceiling);
     for (const std::vector<std::size_t>& part : parts_of(cells)) {
       if (!is_room(part) || !is_walled(part, cells, rooms)) continue;
       std::vector<std::size_t> added;  // to what is enclosed by narrower gaps
       for (const std::size_t i : part) {
         if (!indoors[i]) added.push_back(i);
-        indoors[i] = true;
       }
+      if (has_ceilings && !most_are(added, below_ceiling)) continue;
+      for (const std::size_t i : added) indoors[i] = true;
+      in_rooms.insert(in_rooms.end(), added.begin(), added.end());
       if (2 * added.size() > part.size()) gates.push_back({added[0], gap_into(part, closing)});
     }
   }

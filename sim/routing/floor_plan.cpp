@@ -21,7 +21,7 @@ namespace vernier::sim::internal {
 
 namespace {
 
-constexpr double around_m = 2;  // of the plan, around the world
+constexpr double around_m = 2;  // of the plan, around the world, besides its rim
 
 /// Lines of a world without surfaces as what stands on the floor.
 World with_walls(const World& world, double top_m) {
@@ -46,16 +46,16 @@ FloorPlan::FloorPlan(const World& world, double eye_height_m) {
   constexpr double most_cells = 1.2e6;
   const WorldExtent box = standing_box(world);
   const Eigen::Vector2d size = (box.high_m - box.low_m).head<2>();
-  const double cells = (size.x() + 2 * around_m) / cell_m * ((size.y() + 2 * around_m) / cell_m);
-  if (!(cells <= most_cells)) {
+  const auto across = [](double length_m) { return (length_m + 2 * around_m) / cell_m; };
+  if (!(across(size.x()) * across(size.y()) <= most_cells)) {
     throw Error("route",
                 fmt::format("the floor of {:.0f} x {:.0f} m is too large to propose one", size.x(),
                             size.y()),
                 "give [[route]] points_m yourself");
   }
   low_m_ = box.low_m.head<2>() - Eigen::Vector2d::Constant(around_m);
-  width_ = static_cast<int>((size.x() + 2 * around_m) / cell_m) + 1;
-  height_ = static_cast<int>((size.y() + 2 * around_m) / cell_m) + 1;
+  width_ = static_cast<int>(across(size.x())) + 1 + 2 * rim_cells;
+  height_ = static_cast<int>(across(size.y())) + 1 + 2 * rim_cells;
   const World walls =
       world.surfaces.empty() ? with_walls(world, eye_height_m + robot_top_m) : world;
   const Standing standing(walls, eye_height_m);
@@ -84,7 +84,7 @@ void FloorPlan::block_below(const World& world, double top_m) {
 }
 
 Eigen::Vector2d FloorPlan::centre_m(int x, int y) const {
-  return low_m_ + cell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
+  return low_m_ + cell_m * Eigen::Vector2d(x - rim_cells + 0.5, y - rim_cells + 0.5);
 }
 
 double FloorPlan::inside_m2() const {
@@ -149,7 +149,7 @@ void FloorPlan::visit_cells(const WorldSurface& surface,
     high = high.cwiseMax(p.head<2>());
   }
   const auto column = [&](double at, double from, int most) {
-    return std::clamp(static_cast<int>((at - from) / cell_m), 0, most - 1);
+    return std::clamp(static_cast<int>(std::floor((at - from) / cell_m)) + rim_cells, 0, most - 1);
   };
   for (int y = column(low.y(), low_m_.y(), height_); y <= column(high.y(), low_m_.y(), height_);
        ++y) {

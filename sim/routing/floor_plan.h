@@ -18,7 +18,8 @@ namespace vernier::sim::internal {
 class FloorPlan {
  public:
   static constexpr double cell_m = 0.15;
-  static constexpr double widest_gap_m = 2;  ///< through which the surroundings do not come in
+  static constexpr double widest_gap_m = 2;    ///< through which the surroundings do not come in
+  static constexpr double widest_gate_m = 10;  ///< of halls; wider gaps are between buildings
 
   /// The robot's camera is at `eye_height_m`. Of a world without surfaces its lines on the floor
   /// and at the robot's height stand for walls. Throws Error if the floor is larger than about
@@ -37,8 +38,8 @@ class FloorPlan {
   /// Whether the cell belongs to the largest part of the floor that is inside: free, not over a
   /// hole in a floor that most of it has, not in a solid body, and not connected with the
   /// surroundings of the world through gaps wider than 2 m, so that outer doors may stand open.
-  /// Floor beside such rooms whose own gap is wider is inside too if walls are around four fifths
-  /// of it. In a world without rooms, free and over a floor; without a floor, walled but for a gap.
+  /// Floor whose own gap is wider is inside too if walls are around four fifths of it and it has a
+  /// ceiling where rooms have. In a world without such floor, free and over a floor.
   bool inside(int x, int y) const { return inside_[index(x, y)]; }
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
   double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
@@ -59,13 +60,16 @@ class FloorPlan {
   struct Part {
     std::vector<std::size_t> cells;
     Enclosure enclosure;
-    bool is_wide;  // enough to stand in beside its walls
-    bool is_open;  // to the surroundings
+    bool is_wide;   // enough to stand in beside its walls
+    bool is_open;   // to the surroundings
+    bool is_block;  // perhaps: a shell on ground
   };
   struct Gate {
     std::size_t cell;  // behind it
     double width_m;
   };
+  /// Around the plan, so that a disc as wide as a gate can go around the world.
+  static constexpr int rim_cells = static_cast<int>(widest_gate_m / 2 / cell_m);
   static constexpr std::array<std::pair<int, int>, 4> four_sides{
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
@@ -79,13 +83,15 @@ class FloorPlan {
                                const std::vector<bool>& outside,
                                const std::vector<bool>& floored,
                                const ClosedBodies& bodies) const;
-  bool has_own_floor(const std::vector<std::size_t>& part, const std::vector<bool>& floored) const;
+  bool is_on_ground(const std::vector<std::size_t>& part, const std::vector<bool>& floored) const;
   /// Whether a part of the cells borders on free floor of the surroundings that is none of them.
   bool has_way_out(const std::vector<std::size_t>& part,
                    const std::vector<bool>& cells,
                    const std::vector<bool>& outside) const;
   Enclosure enclosure_of(const std::vector<std::size_t>& part, const ClosedBodies& bodies) const;
   std::vector<Gate> add_behind_gates(const std::vector<bool>& floor,
+                                     const std::vector<Part>& parts,
+                                     const std::vector<bool>& below_ceiling,
                                      std::vector<bool>& indoors) const;
   /// Whether a part of the cells is open, but to what is indoors, along less than a fifth.
   bool is_walled(const std::vector<std::size_t>& part,
@@ -96,7 +102,8 @@ class FloorPlan {
                          const std::vector<float>& closing_m);
   void block_below(const World& world, double top_m);
   std::vector<bool> without_floor(const std::vector<bool>& floored,
-                                  const std::vector<bool>& indoors) const;
+                                  const std::vector<bool>& indoors,
+                                  const std::vector<Part>& parts) const;
   std::vector<bool> other_levels(const World& world, const std::vector<bool>& bare) const;
   double beside_m2(const std::vector<bool>& cells, double within_m) const;
   std::vector<bool> near(const std::vector<bool>& floored) const;
@@ -116,7 +123,7 @@ class FloorPlan {
   std::vector<float> distances_to_others(const std::vector<bool>& cells,
                                          bool is_endless = false) const;
 
-  Eigen::Vector2d low_m_;
+  Eigen::Vector2d low_m_;  // corner within the rim
   int width_ = 0, height_ = 0;
   std::vector<bool> free_, inside_;
   std::vector<float> clearance_;

@@ -20,8 +20,9 @@ namespace {
 
 constexpr double cell_m2 = FloorPlan::cell_m * FloorPlan::cell_m;
 constexpr double least_room_m2 = 4;
-constexpr double gap_step_m = 0.25;   // in which wider gaps are tried
-constexpr double widest_gate_m = 10;  // of halls; wider gaps are between buildings
+constexpr double ceiling_m = 1.8;  // low, and above tables
+constexpr double endless_m = std::numeric_limits<double>::infinity();
+constexpr double gap_step_m = 0.25;  // in which wider gaps are tried
 
 /// Whether one can stand in a part beside its walls; the inside of a wall is narrower.
 bool holds_a_robot(const std::vector<std::size_t>& part, const std::vector<float>& clearances_m) {
@@ -30,14 +31,21 @@ bool holds_a_robot(const std::vector<std::size_t>& part, const std::vector<float
                      [&](std::size_t i) { return clearances_m[i] >= half_m; });
 }
 
+/// Whether more than half of some cells are in a set.
+bool most_are(const std::vector<std::size_t>& cells, const std::vector<bool>& set) {
+  const auto count =
+      std::count_if(cells.begin(), cells.end(), [&](std::size_t i) { return set[i]; });
+  return 2 * static_cast<std::size_t>(count) > cells.size();
+}
+
 double size_m2(const std::vector<std::size_t>& cells) {
   return cell_m2 * static_cast<double>(cells.size());
 }
 
 }  // namespace
 
-/// Takes rooms that are enclosed, with the floor behind their gates. Where there are none, floor
-/// that is open to the surroundings; without any floor, what has walls around but for a gate.
+/// Takes rooms that are enclosed, with the floor behind their gates, or what has walls around but
+/// for a gate. Where there are none, floor that is open to the surroundings.
 /// A shell of single sheets may be a room or a block: it is inside if it is larger.
 void FloorPlan::choose_inside(const World& world) {
   constexpr double thick_m = 0.1;  // the floor's coverings, and what the file rounds
@@ -48,10 +56,11 @@ void FloorPlan::choose_inside(const World& world) {
     indoors[i] = free_[i] && !outside[i];
     open[i] = free_[i] && floored[i];
   }
-  const std::vector<bool> bare = without_floor(floored, indoors);
-  for (std::size_t i = 0; i < free_.size(); ++i) indoors[i] = indoors[i] && !bare[i];
   const ClosedBodies bodies(world);
   std::vector<Part> parts = sorted_out(indoors, outside, floored, bodies);
+  const std::vector<bool> bare = without_floor(floored, indoors, parts);
+  for (std::size_t i = 0; i < free_.size(); ++i) indoors[i] = indoors[i] && !bare[i];
+  parts = sorted_out(indoors, outside, floored, bodies);
   const auto is_room = [](const Part& part) {
     return part.enclosure == Enclosure::none && size_m2(part.cells) >= least_room_m2;
   };
@@ -64,11 +73,12 @@ void FloorPlan::choose_inside(const World& world) {
   }
   std::vector<Part> open_parts = sorted_out(open, outside, floored, bodies);
   const bool has_open = std::any_of(open_parts.begin(), open_parts.end(), is_room);
-  std::vector<Gate> gates;
-  if (has_room || !has_open) {
-    gates = add_behind_gates(has_open ? near(floored) : free_, indoors);
-    if (!gates.empty()) parts = sorted_out(indoors, outside, floored, bodies);
-  } else {
+  const std::vector<bool> below_ceiling = over_floor(world, ceiling_m, endless_m);
+  const std::vector<Gate> gates =
+      add_behind_gates(has_open ? near(floored) : free_, parts, below_ceiling, indoors);
+  if (!gates.empty()) {
+    parts = sorted_out(indoors, outside, floored, bodies);
+  } else if (!has_room && has_open) {
     for (Part& part : open_parts) part.is_open = true;
     parts.insert(parts.end(), open_parts.begin(), open_parts.end());
   }
@@ -89,7 +99,7 @@ void FloorPlan::take_largest(const std::vector<Part>& parts,
   constexpr double least_other_m2 = 1;  // more than what is left behind a table
   const auto is_taken = [&](const Part& part) {
     return size_m2(part.cells) >= least_room_m2 && part.enclosure != Enclosure::body &&
-           !(has_room && part.enclosure == Enclosure::outward_shell);
+           !part.is_block && !(has_room && part.enclosure == Enclosure::outward_shell);
   };
   const auto is_less = [&](const Part& a, const Part& b) {
     return std::pair(is_taken(a), a.cells.size()) < std::pair(is_taken(b), b.cells.size());
@@ -127,10 +137,11 @@ std::vector<FloorPlan::Part> FloorPlan::sorted_out(const std::vector<bool>& cell
     // A room of walls without thickness looks like a solid body from within, but for its door.
     Enclosure enclosure =
         has_way_out(part, cells, outside) ? Enclosure::none : enclosure_of(part, bodies);
-    if (enclosure == Enclosure::outward_shell && !has_own_floor(part, floored)) {
+    if (enclosure == Enclosure::outward_shell && !most_are(part, floored)) {
       enclosure = Enclosure::body;
     }
-    parts.push_back({std::move(part), enclosure, is_wide, false});
+    const bool is_block = enclosure == Enclosure::outward_shell && is_on_ground(part, floored);
+    parts.push_back({std::move(part), enclosure, is_wide, false, is_block});
   }
   return parts;
 }
@@ -171,16 +182,15 @@ Enclosure FloorPlan::enclosure_of(const std::vector<std::size_t>& part,
   return Enclosure::none;
 }
 
-/// Whether a part has a floor that ends at the walls around it along half of them at least, unlike
+/// Whether the floor of a part goes on past the walls around it along more than half of them, as
 /// ground on which a block stands.
-bool FloorPlan::has_own_floor(const std::vector<std::size_t>& part,
-                              const std::vector<bool>& floored) const {
+bool FloorPlan::is_on_ground(const std::vector<std::size_t>& part,
+                             const std::vector<bool>& floored) const {
   constexpr int beyond = 4;  // cells: past a wall and the robot's distance from its two sides
   std::vector<bool> within(free_.size());
   for (const std::size_t i : part) within[i] = true;
-  std::size_t with_floor = 0, outline = 0, ground = 0;
+  std::size_t outline = 0, ground = 0;
   for (const std::size_t i : part) {
-    with_floor += floored[i];
     for (const auto& [dx, dy] : four_sides) {
       const int x = column_of(i), y = row_of(i);
       if (has(x + dx, y + dy) && within[index(x + dx, y + dy)]) continue;
@@ -189,13 +199,15 @@ bool FloorPlan::has_own_floor(const std::vector<std::size_t>& part,
       ground += has(far_x, far_y) && floored[index(far_x, far_y)];
     }
   }
-  return 2 * with_floor > part.size() && 2 * ground <= outline;
+  return 2 * ground > outline;
 }
 
 /// Adds floor that lies behind gaps wider than a door, and is open along less than a fifth of its
-/// outline: of a square room, four fifths of a side. Niches are open further. The gaps are
-/// returned.
+/// outline: of a square room, four fifths of a side. Niches are open further. Where rooms have
+/// ceilings it has one too, unlike a garden behind its fence. The gaps are returned.
 std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>& floor,
+                                                         const std::vector<Part>& parts,
+                                                         const std::vector<bool>& below_ceiling,
                                                          std::vector<bool>& indoors) const {
   std::vector<bool> left(free_.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = free_[i] && floor[i] && !indoors[i];
@@ -206,6 +218,11 @@ std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>
   const std::vector<std::vector<std::size_t>> all = parts_of(left);
   if (std::none_of(all.begin(), all.end(), is_room)) return {};
   std::vector<Gate> gates;
+  std::vector<std::size_t> in_rooms;
+  for (const Part& part : parts) {
+    if (part.enclosure != Enclosure::none) continue;
+    in_rooms.insert(in_rooms.end(), part.cells.begin(), part.cells.end());
+  }
   const std::vector<bool> rooms = indoors;
   const std::vector<float> closing = closing_gaps_m();
   for (double free_m = widest_gap_m + gap_step_m; free_m <= widest_gate_m; free_m += gap_step_m) {
@@ -213,13 +230,16 @@ std::vector<FloorPlan::Gate> FloorPlan::add_behind_gates(const std::vector<bool>
     for (std::size_t i = 0; i < cells.size(); ++i) {
       cells[i] = left[i] && closing[i] <= static_cast<float>(free_m);
     }
+    const bool has_ceilings = most_are(in_rooms, below_ceiling);
     for (const std::vector<std::size_t>& part : parts_of(cells)) {
       if (!is_room(part) || !is_walled(part, cells, rooms)) continue;
       std::vector<std::size_t> added;  // to what is enclosed by narrower gaps
       for (const std::size_t i : part) {
         if (!indoors[i]) added.push_back(i);
-        indoors[i] = true;
       }
+      if (has_ceilings && !most_are(added, below_ceiling)) continue;
+      for (const std::size_t i : added) indoors[i] = true;
+      in_rooms.insert(in_rooms.end(), added.begin(), added.end());
       if (2 * added.size() > part.size()) gates.push_back({added[0], gap_into(part, closing)});
     }
   }
@@ -270,16 +290,19 @@ double FloorPlan::gap_into(const std::vector<std::size_t>& cells,
   return std::isfinite(width_m) ? width_m : 0;
 }
 
-/// Where most of the inside has a floor, what has none is a stairwell, an atrium, or lower.
+/// What has no floor is a stairwell, an atrium, or lower, unless the file has no floors.
 std::vector<bool> FloorPlan::without_floor(const std::vector<bool>& floored,
-                                           const std::vector<bool>& indoors) const {
+                                           const std::vector<bool>& indoors,
+                                           const std::vector<Part>& parts) const {
+  constexpr std::size_t one_in = 10;  // cells with a floor; fewer are mats and sills
   std::vector<bool> bare(indoors.size());
   std::size_t cells = 0, with_floor = 0;
-  for (std::size_t i = 0; i < indoors.size(); ++i) {
-    cells += indoors[i];
-    with_floor += indoors[i] && floored[i];
+  for (const Part& part : parts) {
+    if (part.enclosure == Enclosure::body) continue;
+    cells += part.cells.size();
+    for (const std::size_t i : part.cells) with_floor += floored[i];
   }
-  if (2 * with_floor < cells) return bare;
+  if (one_in * with_floor <= cells) return bare;
   const std::vector<bool> kept = near(floored);
   for (std::size_t i = 0; i < indoors.size(); ++i) bare[i] = indoors[i] && !kept[i];
   return bare;

@@ -84,6 +84,24 @@ TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
   EXPECT_FALSE(enters(proposal, 9.1, 0, 12, 8));
 }
 
+// A gallery of 3 m around a void that is larger than it.
+TEST(ProposedRoute, KeepsToAGalleryAroundAVoid) {
+  Mesh mesh;
+  add_box(mesh, {-0.1, -0.1, 0}, {20.1, 0, 2.6});
+  add_box(mesh, {-0.1, 20, 0}, {20.1, 20.1, 2.6});
+  add_box(mesh, {-0.1, 0, 0}, {0, 20, 2.6});
+  add_box(mesh, {20, 0, 0}, {20.1, 20, 2.6});
+  add_rectangle(mesh, {0, 0, 0}, {20, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 17, 0}, {20, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 3, 0}, {3, 0, 0}, {0, 14, 0});
+  add_rectangle(mesh, {17, 3, 0}, {3, 0, 0}, {0, 14, 0});
+  const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+  EXPECT_GT(route_length_m(proposal.route), 50);
+  EXPECT_FALSE(enters(proposal, 3.4, 3.4, 16.6, 16.6));
+  EXPECT_NEAR(proposal.floor_m2, 400 - 196, 25);
+  EXPECT_NEAR(proposal.level_m2, 196, 25);
+}
+
 /// A plot of 30 x 20 m with two houses that are solid blocks, one of two that overlap;
 /// `has_ground_below` if the ground goes on below them. A fence 1.8 m high with a gate of this
 /// width; none for a width below 0.
@@ -123,7 +141,8 @@ TEST(ProposedRoute, KeepsOutOfSolidBodies) {
       EXPECT_FALSE(enters(proposal, 17, 4, 26, 13));
       EXPECT_FALSE(enters(proposal, 17, 10, 21, 17));
       EXPECT_NEAR(proposal.floor_m2, 600 - 162 - 16, 60);
-      EXPECT_EQ(proposal.other_m2, 0);
+      // Bottoms that became part of the ground around leave shells, which may be rooms.
+      EXPECT_NEAR(proposal.other_m2, has_ground_below ? 0 : 162 + 16 - 37, 10);
       EXPECT_EQ(proposal.is_open, gate_m < 0 || gate_m > 2);
       EXPECT_NEAR(proposal.gap_m, gate_m > 2 ? gate_m : 0, 0.3);
     }
@@ -250,6 +269,63 @@ TEST(ProposedRoute, IsInAHallWithAGateBesideAnEnclosedRoom) {
   }
 }
 
+// Property: floor in front of a gate, as far as it goes, does not close the way around the hall.
+TEST(ProposedRoute, IsInAHallWithAnApron) {
+  for (const double apron_m : {1.0, 2.0, 6.0}) {
+    Mesh mesh = hall(5, true);
+    add_rectangle(mesh, {0, -apron_m, 0}, {28, 0, 0}, {0, apron_m, 0});
+    add_rectangle(mesh, {0, 16, 0}, {28, 0, 0}, {0, 1, 0});
+    const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
+    EXPECT_NEAR(proposal.floor_m2, 28 * 16, 50) << apron_m;
+    EXPECT_NEAR(proposal.gap_m, 5, 0.35) << apron_m;
+    EXPECT_FALSE(enters(proposal, 0, 16.2, 28, 17)) << apron_m;
+  }
+}
+
+/// A house of 8 x 6 m with a door or gap of this width on ground that goes on by 10 m. A fence with
+/// a gate of 4 m is around if `has_fence`.
+Mesh house_on_plot(double door_m, bool has_ceiling, bool has_fence) {
+  Mesh mesh;
+  add_rectangle(mesh, {-10, -10, 0}, {28, 0, 0}, {0, 26, 0});
+  add_box(mesh, {0, 0, 0}, {3, 0.2, 2.6});
+  add_box(mesh, {3 + door_m, 0, 0}, {8, 0.2, 2.6});
+  add_box(mesh, {0, 5.8, 0}, {8, 6, 2.6});
+  add_box(mesh, {0, 0.2, 0}, {0.2, 5.8, 2.6});
+  add_box(mesh, {7.8, 0.2, 0}, {8, 5.8, 2.6});
+  if (has_ceiling) add_box(mesh, {0, 0, 2.6}, {8, 6, 2.8});
+  if (has_fence) {
+    add_box(mesh, {-10, -10, 0}, {0, -9.9, 1.8});
+    add_box(mesh, {4, -10, 0}, {18, -9.9, 1.8});
+    add_box(mesh, {-10, 15.9, 0}, {18, 16, 1.8});
+    add_box(mesh, {-10, -9.9, 0}, {-9.9, 15.9, 1.8});
+    add_box(mesh, {17.9, -9.9, 0}, {18, 15.9, 1.8});
+  }
+  return mesh;
+}
+
+// Where the rooms have ceilings, a garden behind the gate of its fence is none; without ceilings it
+// cannot be told from a hall.
+TEST(ProposedRoute, KeepsAGardenBehindAGateApart) {
+  const auto garden = [](bool has_ceiling) {
+    return propose_route(FloorPlan(imported(house_on_plot(0.9, has_ceiling, true)), 1.2));
+  };
+  EXPECT_FALSE(garden(true).is_open);
+  EXPECT_NEAR(garden(true).floor_m2, 7.6 * 5.6, 4);
+  EXPECT_NEAR(garden(true).open_m2, 28 * 26 - 8 * 6, 40);
+  EXPECT_GT(garden(false).floor_m2, 600);
+  EXPECT_NEAR(garden(false).gap_m, 4, 0.35);
+}
+
+// A house whose only gap is wider than a door, and garages, are not given up for the ground.
+TEST(ProposedRoute, IsInAHouseWithATerraceDoorAlone) {
+  for (const bool has_ceiling : {false, true}) {
+    const RouteProposal proposal =
+        propose_route(FloorPlan(imported(house_on_plot(3, has_ceiling, false)), 1.2));
+    EXPECT_NEAR(proposal.floor_m2, 7.6 * 5.6, 4) << has_ceiling;
+    EXPECT_NEAR(proposal.gap_m, 3, 0.35) << has_ceiling;
+  }
+}
+
 // A niche in a wall of a house, and ground around it, are not floor behind a gate.
 TEST(ProposedRoute, StaysInAHouseBesideANiche) {
   Mesh mesh = test::house();
@@ -279,11 +355,12 @@ TEST(ProposedRoute, IsInAClosedHouseOfSheetsLargerThanItsTerrace) {
   EXPECT_FALSE(enters(proposal, 0, -3, 9, 0));
 }
 
-// On ground that goes on below its walls it is taken for a block.
+// On ground that goes on below its walls it is not entered.
 TEST(ProposedRoute, KeepsOutOfAClosedHouseOfSheetsOnGround) {
   const RouteProposal proposal = propose_route(FloorPlan(imported(house_of_sheets(0)), 1.2));
   EXPECT_TRUE(proposal.is_open);
   EXPECT_FALSE(enters(proposal, 0, 0, 8, 6));
+  EXPECT_NEAR(proposal.other_m2, 48 - 4, 4);  // and told, since it may be a room
 }
 
 // A room of which a part is lower, or higher.

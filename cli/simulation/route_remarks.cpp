@@ -15,8 +15,10 @@ std::string floor_text(const RouteProposal& proposal) {
   std::string text =
       fmt::format("within 2 m of {:.0f} of {:.0f} m2 of floor", proposal.near_m2, all_m2);
   if (proposal.other_m2 > 0) {
-    text += fmt::format("; {:.0f} m2 are not connected with it by a way of {:g} m",
-                        proposal.other_m2, 2 * sim::internal::robot_radius_m);
+    text += fmt::format(
+        "; {:.0f} m2 are not connected with it by a way of {:g} m, or over a step of more "
+        "than 2 cm",
+        proposal.other_m2, 2 * sim::internal::robot_radius_m);
   }
   if (proposal.level_m2 > 0) {
     text += fmt::format("; {:.0f} m2 beside it are at another level, or a hole", proposal.level_m2);
@@ -40,7 +42,7 @@ std::string open_floor_text(const RouteProposal& proposal) {
         widest_m);
   }
   return fmt::format(
-      "the floor of the route is open to the surroundings by a gap of about {:.1f} m; if "
+      "the floor of the route is open to the surroundings by a gap of about {:.1f} m or less; if "
       "the route should not lead there, close the gap, or give [[route]] points_m",
       proposal.gap_m);
 }

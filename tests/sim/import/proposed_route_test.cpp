@@ -38,6 +38,22 @@ bool enters(const RouteProposal& proposal, double x0, double y0, double x1, doub
   return false;
 }
 
+/// Walls along the border of a rectangle that begins at the origin, with a gate in the front from
+/// `gate_at_m` on.
+void add_walls_around(Mesh& mesh,
+                      const Eigen::Vector2d& size_m,
+                      double thick_m,
+                      double high_m,
+                      double gate_at_m,
+                      double gate_m) {
+  const double x = size_m.x(), y = size_m.y();
+  add_box(mesh, {0, 0, 0}, {gate_at_m, thick_m, high_m});
+  add_box(mesh, {gate_at_m + gate_m, 0, 0}, {x, thick_m, high_m});
+  add_box(mesh, {0, y - thick_m, 0}, {x, y, high_m});
+  add_box(mesh, {0, thick_m, 0}, {thick_m, y - thick_m, high_m});
+  add_box(mesh, {x - thick_m, thick_m, 0}, {x, y - thick_m, high_m});
+}
+
 // Property: the route leads through both rooms, where a robot can stand, and each leg begins where
 // a robot gets to from the first.
 TEST(ProposedRoute, LeadsThroughAllRooms) {
@@ -119,13 +135,7 @@ World plot(bool has_ground_below, double gate_m) {
   add_box(mesh, {4, 4, 0}, {13, 13, 5});
   add_box(mesh, {17, 4, 0}, {26, 13, 6});
   add_box(mesh, {17, 10, 0}, {21, 17, 4});  // with which it is an L
-  if (gate_m >= 0) {
-    add_box(mesh, {0, 0, 0}, {12, 0.1, 1.8});
-    add_box(mesh, {12 + gate_m, 0, 0}, {30, 0.1, 1.8});
-    add_box(mesh, {0, 19.9, 0}, {30, 20, 1.8});
-    add_box(mesh, {0, 0.1, 0}, {0.1, 19.9, 1.8});
-    add_box(mesh, {29.9, 0.1, 0}, {30, 19.9, 1.8});
-  }
+  if (gate_m >= 0) add_walls_around(mesh, {30, 20}, 0.1, 1.8, 12, gate_m);
   return imported(mesh);
 }
 
@@ -213,13 +223,7 @@ TEST(ProposedRoute, KeepsOutOfASmallerBlockTurnedInsideOut) {
     add_box(mesh, {8, 5, 0}, {20, 13, 4});
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     add_rectangle(mesh, {0, 0, 0}, {26, 0, 0}, {0, 18, 0});
-    if (gate_m >= 0) {
-      add_box(mesh, {0, 0, 0}, {5, 0.1, 2});
-      add_box(mesh, {5 + gate_m, 0, 0}, {26, 0.1, 2});
-      add_box(mesh, {0, 17.9, 0}, {26, 18, 2});
-      add_box(mesh, {0, 0.1, 0}, {0.1, 17.9, 2});
-      add_box(mesh, {25.9, 0.1, 0}, {26, 17.9, 2});
-    }
+    if (gate_m >= 0) add_walls_around(mesh, {26, 18}, 0.1, 2, 5, gate_m);
     const RouteProposal proposal = propose_route(FloorPlan(imported(mesh), 1.2));
     EXPECT_GT(route_length_m(proposal.route), 60);
     EXPECT_FALSE(enters(proposal, 8, 5, 20, 13)) << gate_m;
@@ -232,11 +236,7 @@ TEST(ProposedRoute, KeepsOutOfASmallerBlockTurnedInsideOut) {
 Mesh hall(double gate_m, bool has_door) {
   Mesh mesh;
   add_rectangle(mesh, {0, 0, 0}, {28, 0, 0}, {0, 16, 0});
-  add_box(mesh, {0, 0, 0}, {9, 0.2, 5});
-  add_box(mesh, {9 + gate_m, 0, 0}, {28, 0.2, 5});
-  add_box(mesh, {0, 15.8, 0}, {28, 16, 5});
-  add_box(mesh, {0, 0.2, 0}, {0.2, 15.8, 5});
-  add_box(mesh, {27.8, 0.2, 0}, {28, 15.8, 5});
+  add_walls_around(mesh, {28, 16}, 0.2, 5, 9, gate_m);
   add_box(mesh, {22, 11, 0}, {24, 11.1, 2.5});
   add_box(mesh, {has_door ? 24.9 : 24, 11, 0}, {28, 11.1, 2.5});
   add_box(mesh, {22, 11.1, 0}, {22.1, 15.8, 2.5});

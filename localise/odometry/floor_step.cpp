@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/base/plane_vectors.h"
 #include "calib/pose.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
@@ -32,7 +33,7 @@ std::optional<Pose2D> step_of_two(const Eigen::Vector2d& from_a,
   constexpr double nearest_m = 0.2;  // points above each other say nothing of the turn
   const Eigen::Vector2d from = from_b - from_a, to = to_b - to_a;
   if (from.norm() < nearest_m || to.norm() < nearest_m) return std::nullopt;
-  const double turn = std::atan2(to.x() * from.y() - to.y() * from.x(), to.dot(from));
+  const double turn = std::atan2(cross(to, from), to.dot(from));
   const double c = std::cos(turn), s = std::sin(turn);
   Eigen::Matrix2d R;
   R << c, -s, s, c;

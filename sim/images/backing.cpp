@@ -37,16 +37,9 @@ double along_border(const Vector3d& a, const Vector3d& b, const Vector3d& p, con
 
 /// Whether a point projects into a polygon along the axis of its normal's largest component.
 bool is_over(const Vector3d& x, const std::vector<Vector3d>& polygon, const Vector3d& normal) {
-  Eigen::Index axis = 0;
+  int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
-  const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
-  bool inside = false;
-  for (std::size_t k = 0, last = polygon.size() - 1; k < polygon.size(); last = k++) {
-    const Vector3d &p = polygon[k], &q = polygon[last];
-    if ((p[j] > x[j]) == (q[j] > x[j])) continue;
-    if (x[i] < (q[i] - p[i]) * (x[j] - p[j]) / (q[j] - p[j]) + p[i]) inside = !inside;
-  }
-  return inside;
+  return inside_outline(x, polygon, axis);
 }
 
 AlignedBox3d box_of(const std::vector<Vector3d>& points) {

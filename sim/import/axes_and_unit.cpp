@@ -272,11 +272,14 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   }
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
-  const FloorsByAxis floors{inner_floors(mesh, 0), inner_floors(mesh, 1), inner_floors(mesh, 2)};
+  const Triangles triangles = different_triangles(mesh);
+  FloorsByAxis floors;
+  for (int axis = 0; axis < 3; ++axis) floors[axis] = inner_floors(mesh, triangles, axis);
   const Voted voted = voted_axes(with_joined_faces(mesh));
   std::optional<int> up = axis_of_floors(floors, size);
   // Floors seem to end at walls, too, where all are sheets and façades pass by the floors.
-  if (!up || (voted.folded != up && is_of_sheets(mesh))) up = axis_by_signs(voted, floors, size);
+  if (!up || (voted.folded != up && is_of_sheets(mesh, triangles)))
+    up = axis_by_signs(voted, floors, size);
   if (up && !may_lie(size, *up)) return *up;
   throw Error(place, "does not say which axis is up, and its shape does not show it",
               "say so with --up x, y or z");

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -85,16 +84,6 @@ std::vector<double> inner_heights(const Mesh& mesh, int axis) {
   return heights;
 }
 
-/// The triangles of a mesh, those that it has twice once.
-std::set<std::array<std::uint32_t, 3>> different_triangles(const Mesh& mesh) {
-  std::set<std::array<std::uint32_t, 3>> different;
-  for (std::array<std::uint32_t, 3> t : mesh.triangles) {
-    std::sort(t.begin(), t.end());
-    different.insert(t);
-  }
-  return different;
-}
-
 Corners corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
@@ -117,10 +106,13 @@ std::optional<bool> passes(const std::vector<Eigen::Vector3d>& normals, int axis
 }
 
 /// Share of the cross-section of upright surfaces at these heights that ends there.
-double ending_share(const Mesh& mesh, int axis, const std::vector<double>& heights) {
+double ending_share(const Mesh& mesh,
+                    const Triangles& triangles,
+                    int axis,
+                    const std::vector<double>& heights) {
   double passing = 0, ending = 0;
   std::map<Edge, std::vector<Eigen::Vector3d>> normals;  // of the faces at edges in a level
-  for (const auto& t : different_triangles(mesh)) {
+  for (const auto& t : triangles) {
     const Corners corners = corners_of(mesh, t);
     const Eigen::Vector3d normal = normal_of(corners);
     const auto [least, most] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
@@ -147,12 +139,20 @@ double ending_share(const Mesh& mesh, int axis, const std::vector<double>& heigh
 
 }  // namespace
 
-std::optional<InnerFloors> inner_floors(const Mesh& mesh, int axis) {
+Triangles different_triangles(const Mesh& mesh) {
+  Triangles triangles = mesh.triangles;
+  for (auto& t : triangles) std::sort(t.begin(), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
+}
+
+std::optional<InnerFloors> inner_floors(const Mesh& mesh, const Triangles& triangles, int axis) {
   if (mesh.triangles.empty()) return {};
   const std::vector<double> heights = inner_heights(mesh, axis);
   if (heights.empty()) return {};
   const auto [low, high] = extent_of(mesh);
-  InnerFloors found{ending_share(mesh, axis, heights), high[axis] - heights.back()};
+  InnerFloors found{ending_share(mesh, triangles, axis, heights), high[axis] - heights.back()};
   double below = low[axis];
   for (const double height : heights) {
     found.highest = std::max(found.highest, height - below);
@@ -161,10 +161,10 @@ std::optional<InnerFloors> inner_floors(const Mesh& mesh, int axis) {
   return found;
 }
 
-bool is_of_sheets(const Mesh& mesh) {
+bool is_of_sheets(const Mesh& mesh, const Triangles& triangles) {
   constexpr double few = 0.1;  // of the length of edges
   std::map<Edge, std::vector<Eigen::Vector3d>> normals;
-  for (const auto& t : different_triangles(mesh)) {
+  for (const auto& t : triangles) {
     const Eigen::Vector3d normal = normal_of(corners_of(mesh, t));
     for (int k = 0; k < 3; ++k) normals[std::minmax(t[k], t[(k + 1) % 3])].push_back(normal);
   }

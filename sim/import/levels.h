@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -29,15 +31,19 @@ struct InnerFloors {
   double highest = 0;  ///< the largest distance between neighbours, and the ends of the building
 };
 
+/// The triangles of a mesh, those that it has twice once, each with its vertices ascending.
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+Triangles different_triangles(const Mesh& mesh);
+
 /// The levels over at least a third of the plan, without those in the outer tenths of the extent,
 /// where façades and thick slabs have theirs; nothing without any. Floors interrupt walls, and
 /// walls do not interrupt floors: so where walls are taken for floors, the true floors pass through
 /// them. An upright surface ends at an edge at which it does not go on in its plane, or at which
-/// another surface meets it. For a welded mesh about 10 m large.
-std::optional<InnerFloors> inner_floors(const Mesh& mesh, int axis);
+/// another surface meets it. For a welded mesh about 10 m large, and its different triangles.
+std::optional<InnerFloors> inner_floors(const Mesh& mesh, const Triangles& triangles, int axis);
 
 /// Whether a welded mesh has surfaces without thickness: an edge of a solid has two faces, or four
 /// where two solids meet, and one of a sheet often one or three.
-bool is_of_sheets(const Mesh& mesh);
+bool is_of_sheets(const Mesh& mesh, const Triangles& triangles);
 
 }  // namespace vernier::sim::internal

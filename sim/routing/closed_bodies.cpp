@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/study/standing_place.h"
 #include "sim/visibility/box_tree.h"
 #include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"

@@ -102,10 +102,9 @@ void FloorPlan::flood(std::vector<std::size_t>& reached, std::vector<bool>& left
   }
 }
 
-std::vector<bool> FloorPlan::outdoors(double gap_m) const {
-  const std::vector<float> room = distances_to_others(free_, true);
+std::vector<bool> FloorPlan::outdoors(double gap_m, const std::vector<float>& room_m) const {
   std::vector<bool> left(free_.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = room[i] >= gap_m / 2;
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = room_m[i] >= gap_m / 2;
   std::vector<std::size_t> outside;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {

@@ -111,8 +111,9 @@ class FloorPlan {
   /// Adds to the cells that are reached those that border on them, and takes them out of what is
   /// left, until nothing that is left borders on them.
   void flood(std::vector<std::size_t>& reached, std::vector<bool>& left) const;
-  /// What gaps wider than `gap_m` connect with the surroundings of the world.
-  std::vector<bool> outdoors(double gap_m) const;
+  /// What gaps wider than `gap_m` connect with the surroundings of the world; `room_m` is the
+  /// distance from each free cell to the nearest that is not.
+  std::vector<bool> outdoors(double gap_m, const std::vector<float>& room_m) const;
   /// Cells over surfaces that lie between two heights.
   std::vector<bool> over_floor(const World& world, double low_m, double high_m) const;
   /// Connected parts, the largest first.

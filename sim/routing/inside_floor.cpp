@@ -50,7 +50,7 @@ double size_m2(const std::vector<std::size_t>& cells) {
 void FloorPlan::choose_inside(const World& world) {
   constexpr double thick_m = 0.1;  // the floor's coverings, and what the file rounds
   const std::vector<bool> floored = over_floor(world, -thick_m, thick_m);
-  const std::vector<bool> outside = outdoors(widest_gap_m);
+  const std::vector<bool> outside = outdoors(widest_gap_m, distances_to_others(free_, true));
   std::vector<bool> indoors(free_.size()), open(free_.size());
   for (std::size_t i = 0; i < free_.size(); ++i) {
     indoors[i] = free_[i] && !outside[i];
@@ -268,8 +268,9 @@ bool FloorPlan::is_walled(const std::vector<std::size_t>& part,
 /// of the world; infinite if all do.
 std::vector<float> FloorPlan::closing_gaps_m() const {
   std::vector<float> closing(free_.size(), std::numeric_limits<float>::infinity());
+  const std::vector<float> room_m = distances_to_others(free_, true);
   for (double free_m = widest_gap_m; free_m <= widest_gate_m; free_m += gap_step_m) {
-    const std::vector<bool> outside = outdoors(free_m);
+    const std::vector<bool> outside = outdoors(free_m, room_m);
     for (std::size_t i = 0; i < closing.size(); ++i) {
       if (!outside[i]) closing[i] = std::min(closing[i], static_cast<float>(free_m));
     }

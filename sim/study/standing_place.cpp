@@ -17,6 +17,7 @@
 #include "sim/experiment.h"
 #include "sim/study/floor_grid.h"
 #include "sim/visibility.h"
+#include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
 #include "sim/world/plan_distance.h"
 
@@ -121,21 +122,6 @@ class WayToRoute {
 };
 
 }  // namespace
-
-bool inside_outline(const Eigen::Vector3d& at_m,
-                    const std::vector<Eigen::Vector3d>& polygon_m,
-                    int axis) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon_m.size() - 1; i < polygon_m.size(); j = i++) {
-    const Eigen::Vector3d &a = polygon_m[i], &b = polygon_m[j];
-    if ((a[v] > at_m[v]) != (b[v] > at_m[v]) &&
-        at_m[u] < (b[u] - a[u]) * (at_m[v] - a[v]) / (b[v] - a[v]) + a[u]) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
 
 bool inside_plan(const Eigen::Vector2d& at_m, const std::vector<Eigen::Vector3d>& polygon_m) {
   return inside_outline({at_m.x(), at_m.y(), 0}, polygon_m, 2);

@@ -26,12 +26,6 @@ ProtocolSpan span(QueryProtocol protocol);
 /// lower, and of the route with 0.6 m around it.
 WorldExtent standing_box(const World& world);
 
-/// Whether a point is inside the polygon's outline as seen along an axis (0 to 2), by the even-odd
-/// rule.
-bool inside_outline(const Eigen::Vector3d& at_m,
-                    const std::vector<Eigen::Vector3d>& polygon_m,
-                    int axis);
-
 /// Whether the point is inside the polygon's outline on the floor.
 bool inside_plan(const Eigen::Vector2d& at_m, const std::vector<Eigen::Vector3d>& polygon_m);
 

@@ -183,6 +183,21 @@ PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m) {
   return plane;
 }
 
+bool inside_outline(const Eigen::Vector3d& at_m,
+                    const std::vector<Eigen::Vector3d>& polygon_m,
+                    int axis) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon_m.size() - 1; i < polygon_m.size(); j = i++) {
+    const Eigen::Vector3d &a = polygon_m[i], &b = polygon_m[j];
+    if ((a[v] > at_m[v]) != (b[v] > at_m[v]) &&
+        at_m[u] < (b[u] - a[u]) * (at_m[v] - a[v]) / (b[v] - a[v]) + a[u]) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
 std::vector<std::vector<int>> convex_pieces(const std::vector<Eigen::Vector3d>& polygon_m) {
   const PolygonPlane plane = polygon_plane(polygon_m);
   if (plane.normal.isZero()) return {};

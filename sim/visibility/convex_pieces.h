@@ -21,6 +21,12 @@ struct PolygonPlane {
 };
 PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m);
 
+/// Whether a point is inside the polygon's outline as seen along an axis (0 to 2), by the even-odd
+/// rule.
+bool inside_outline(const Eigen::Vector3d& at_m,
+                    const std::vector<Eigen::Vector3d>& polygon_m,
+                    int axis);
+
 /// Splits a simple planar polygon into convex pieces, each a loop of indices into `polygon_m`,
 /// counter-clockwise about the normal: ear clipping, then removal of every unnecessary cut (Hertel
 /// and Mehlhorn, "Fast triangulation of simple polygons", 1983; at most four times the minimum

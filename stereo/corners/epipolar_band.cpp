@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <string>
 
+#include "calib/base/plane_vectors.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -93,7 +94,7 @@ void EpipolarBand::subdivide(const Ray& ray,
     const Eigen::Vector2d chord = to.pixel_px - from.pixel_px;
     const Eigen::Vector2d off = between->pixel_px - from.pixel_px;
     const double bend =
-        std::abs(chord.x() * off.y() - chord.y() * off.x()) / std::max(chord.norm(), 1e-12);
+        std::abs(vernier::internal::cross(chord, off)) / std::max(chord.norm(), 1e-12);
     if (chord.norm() > longest_step_px || bend > straight_px) {
       subdivide(ray, *between, depth + 1, nodes);
       subdivide(ray, to, depth + 1, nodes);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/base/plane_vectors.h"
 #include "stereo/canny_edges.h"
 
 namespace vernier::stereo::internal {
@@ -53,7 +54,7 @@ EdgeLine::EdgeLine(const std::vector<EdgePoint>& points,
   }
   centroid = origin + regression.centroid();
   direction = regression.direction();
-  if (direction.x() * brighter.y() - direction.y() * brighter.x() < 0) direction = -direction;
+  if (vernier::internal::cross(direction, brighter) < 0) direction = -direction;
   normal = {-direction.y(), direction.x()};
   rms_px = regression.rms();
   propagate(points, places, scale_px);

@@ -7,10 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -353,26 +351,6 @@ TEST(JoinedLines, UncertainSegmentsAreLeftOut) {
   ASSERT_EQ(joined.lines.size(), 1U);
   EXPECT_EQ(joined.lines[0].views, 2);
   EXPECT_EQ(joined.line_of[1][0], JoinedLines::none);
-}
-
-TEST(JoinedLines, CostGrowsWithWhatIsNear) {
-  // four times the place with four times the lines, seen by four times the views
-  const auto seconds = [](int tiles) {
-    std::vector<SegmentsOfView> views;
-    for (int tile = 0; tile < tiles; ++tile) {
-      Scene scene = scene_of(random_lines(60, tile), 10, 200 + tile, {});
-      for (SegmentsOfView& view : scene.views) {
-        view.T_world_camera.t += Vector3d(8.0 * tile, 0, 0);
-        views.push_back(std::move(view));
-      }
-    }
-    const std::clock_t begin = std::clock();
-    join_lines(views);
-    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  };
-  const double one = std::min(seconds(4), seconds(4)), four = seconds(16);
-  RecordProperty("ratio_for_4_times", std::to_string(four / one));
-  EXPECT_LT(four, 8 * one);  // quadratic: 16
 }
 
 TEST(JoinedLines, RefusesWhatIsNoSegment) {

@@ -264,8 +264,8 @@ TEST(AliasFinder, AgreesWithAllPosesOfAGrid) {
   EXPECT_GT(unique, 5);
 }
 
-// All of the same height in one room: no pair is rare. 100,000 took 22 minutes when every pair of
-// uprights was tried; docs/results.md has what they take.
+// All of the same height in one room: no pair is rare, and every pair of uprights is too many to
+// try (input_growth of bench/ has what it takes).
 TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   World world;
   world.objects.resize(1);
@@ -276,19 +276,9 @@ TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   }
   const Visibility visibility(world);
   const AliasFinder finder(visibility, test::nominal_rig().rig, {});
-  const auto cpu_s = [] {
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
-    return static_cast<double>(used.ru_utime.tv_sec) +
-           1e-6 * static_cast<double>(used.ru_utime.tv_usec);
-  };
-  const double before = cpu_s();
   const Aliases found = finder.aliases({10, 10, 0.3});
-  const double took = cpu_s() - before;
-  RecordProperty("cpu_s", std::to_string(took));
   EXPECT_TRUE(found.determined);
   EXPECT_EQ(found.elsewhere(), 0);
-  EXPECT_LT(took, 30);
 }
 
 TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {

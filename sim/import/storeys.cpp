@@ -22,6 +22,8 @@ constexpr double level_m = 0.05;  // heights are told apart to this
 constexpr double lowest_wall_m = 1.5;
 constexpr double least_walls = 0.2;   // length at their lower ends, of that of the storey with most
 constexpr double least_floor = 0.25;  // level surface, of the bounding box of the walls on it
+constexpr double least_passed_floor = 0.5;  // that walls pass by, of the floor below it
+constexpr double thickest_slab_m = 0.4;
 constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin or end
 
 long bin_of(double z) { return std::lround(z / level_m); }
@@ -45,10 +47,16 @@ struct Walls {
   ByHeight level_ends;
 };
 
+struct Wall {
+  double low, high, length;
+  Eigen::AlignedBox2d box;
+};
+
 /// The surfaces of a building by their heights.
 struct Surfaces {
   ByHeight up, level;  // level surface that faces up, and all
   std::map<long, Walls> walls;
+  std::vector<Wall> single_walls;
 };
 
 /// Length of a face's edges at its upper end.
@@ -65,7 +73,10 @@ void add_wall(const Polygon& face, double area, double low, double high, Surface
   const double length = area / (high - low);
   Walls& walls = surfaces.walls[bin_of(low)];
   walls.begin.add(length, low);
-  for (const Eigen::Vector3d& v : face) walls.box.extend(v.head<2>());
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& v : face) box.extend(v.head<2>());
+  walls.box.extend(box);
+  surfaces.single_walls.push_back({low, high, length, box});
   if (upper_edge(face, high) > 0.5 * length) walls.level_ends[bin_of(high)].add(length, high);
 }
 
@@ -132,12 +143,69 @@ std::vector<Walls> starts_of(const Surfaces& surfaces) {
   return starts;
 }
 
+/// Area of the floor at a height, as far as it lies in a box; of the box without one.
+double area_below(const Surfaces& surfaces, double z, const Eigen::AlignedBox2d& box) {
+  double area = 0;
+  for (const auto& [bin, level] : surfaces.up) {
+    if (std::abs(level.z() - z) < floor_above_m) area = std::max(area, level.amount);
+  }
+  return area > 0 ? std::min(area, box.volume()) : box.volume();
+}
+
+/// Whether walls of two storeys pass by a level surface, which is half as large as the floor below:
+/// façades, and walls that stand on each other without a slab between them.
+bool is_passed_floor(const AtHeight& level,
+                     double below,
+                     double least_length,
+                     const Surfaces& surfaces) {
+  const double z = level.z();
+  double length = 0;
+  Eigen::AlignedBox2d box;
+  for (const Wall& wall : surfaces.single_walls) {
+    if (wall.low > z - lowest_storey_m || wall.high < z + lowest_storey_m - thickest_slab_m) {
+      continue;
+    }
+    length += wall.length;
+    box.extend(wall.box);
+  }
+  return length >= least_length &&
+         level.amount >= least_passed_floor * area_below(surfaces, below, box);
+}
+
+/// Adds the floors by which walls pass, the largest first, to those on which walls begin.
+void add_passed_floors(const Surfaces& surfaces,
+                       double least_length,
+                       std::vector<double>& heights) {
+  std::vector<AtHeight> levels;
+  for (const ByHeight* of : {&surfaces.up, &surfaces.level}) {  // a sheet may face down
+    const auto begin = static_cast<std::ptrdiff_t>(levels.size());
+    for (const auto& [bin, level] : *of) levels.push_back(level);
+    std::stable_sort(levels.begin() + begin, levels.end(),
+                     [](const AtHeight& a, const AtHeight& b) { return a.amount > b.amount; });
+  }
+  const double largest = levels.empty() ? 0 : levels[0].amount;
+  for (const AtHeight& level : levels) {
+    const double z = level.z();
+    double below = -std::numeric_limits<double>::infinity();
+    bool is_near = false;
+    for (const double height : heights) {
+      is_near = is_near || std::abs(height - z) < lowest_storey_m;
+      if (height < z) below = std::max(below, height);
+    }
+    // Those much smaller than all others are looked at no further: there may be many.
+    if (is_near || std::isinf(below) || level.amount < 0.02 * largest) continue;
+    if (is_passed_floor(level, below, least_length, surfaces)) heights.push_back(z);
+  }
+}
+
 }  // namespace
 
 std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
   const Surfaces surfaces = surfaces_of(faces);
+  const std::vector<Walls> starts = starts_of(surfaces);
+  const double most_walls = starts.empty() ? 0 : starts[0].begin.amount;
   std::vector<double> heights, without_floor;
-  for (const Walls& walls : starts_of(surfaces)) {
+  for (const Walls& walls : starts) {
     if (const AtHeight* floor = floor_at(surfaces.up, walls.begin.z(), walls)) {
       heights.push_back(floor->z());
     } else if (carry_a_ceiling(walls, surfaces)) {
@@ -151,6 +219,7 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
                                          : *std::max_element(heights.begin(), heights.end());
   std::copy_if(without_floor.begin(), without_floor.end(), std::back_inserter(heights),
                [&](double height) { return height <= highest; });
+  add_passed_floors(surfaces, least_walls * most_walls, heights);
   std::sort(heights.begin(), heights.end());
   return heights;
 }

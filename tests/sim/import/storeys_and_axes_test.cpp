@@ -123,6 +123,44 @@ TEST(Storeys, MayHaveFloorsThatFaceDown) {
   expect_floors(with_walls(4.8), {0});  // a parapet
 }
 
+// Façades are often one face over all storeys, and walls that stand on each other without a slab
+// are one: the floors between them are storeys, a gallery, a parapet and a low attic are none.
+TEST(Storeys, MayHaveWallsThatPassByTheirFloors) {
+  const auto shell = [](double top, bool is_sheet) {
+    Mesh mesh;
+    const double in = is_sheet ? 0 : 0.2;
+    for (const double y : {0.0, 8 - in}) add_box(mesh, {0, y, 0}, {10, y + in, top});
+    for (const double x : {0.0, 10 - in}) add_box(mesh, {x, in, 0}, {x + in, 8 - in, top});
+    add_rectangle(mesh, {0, 0, 0}, {10, 0, 0}, {0, 8, 0});
+    return mesh;
+  };
+  const auto with_floors = [](Mesh mesh, const std::vector<double>& heights, double slab_m) {
+    for (const double z : heights) {
+      if (slab_m > 0) {
+        add_box(mesh, {0, 0, z - slab_m}, {10, 8, z});
+      } else {
+        add_rectangle(mesh, {0, 0, z}, {10, 0, 0}, {0, 8, 0});
+      }
+    }
+    return mesh;
+  };
+  for (const bool is_sheet : {false, true}) {
+    for (const double slab_m : {0.0, 0.3}) {
+      expect_floors(with_floors(shell(9, is_sheet), {3, 6, 9}, slab_m), {0, 3, 6});
+      expect_floors(with_floors(shell(4, is_sheet), {3}, slab_m), {0});     // a parapet
+      expect_floors(with_floors(shell(3, is_sheet), {3}, slab_m), {0});     // a roof
+      expect_floors(with_floors(shell(9, is_sheet), {2, 9}, slab_m), {0});  // too low to stand
+    }
+  }
+  Mesh hall = with_floors(shell(7, false), {7}, 0.3);
+  add_box(hall, {0, 0, 2.8}, {4, 8, 3});  // a gallery over two fifths of it
+  expect_floors(hall, {0});
+  // On a plot that is larger than the house.
+  Mesh house = with_floors(shell(6, false), {3, 6}, 0.3);
+  add_rectangle(house, {-20, -20, -0.005}, {50, 0, 0}, {0, 50, 0});
+  expect_floors(house, {0, 3});
+}
+
 // Walls below a floor are of a storey, also where the ground has no slab.
 TEST(Storeys, MayLackASlabAtTheGround) {
   Mesh mesh = test::house(0, false);

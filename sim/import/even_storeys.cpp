@@ -19,8 +19,9 @@ namespace {
 constexpr double even = 0.02;       // of a storey
 constexpr double most_slender = 3;  // height by the narrower side of the plan
 constexpr double most_slender_of_many = 4.5;
-constexpr int many = 5;            // storeys
-constexpr double half_way = 0.15;  // of a storey, from its middle
+constexpr double most_slender_of_a_tower = 8;
+constexpr int many = 5, tower = 7;  // storeys
+constexpr double half_way = 0.15;   // of a storey, from its middle
 constexpr std::size_t most_levels = 200;
 
 // What lies below and above a row of levels, in storeys.
@@ -102,7 +103,9 @@ std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis) {
           row.floors > 2 ? below < most_below && above < (row.floors > 3 ? most_roof : most_above)
                          : below < most_plinth && above > least_upper && above < most_upper;
       const int count = row.floors - (above < least_of_storey ? 1 : 0);
-      const bool is_slender = slender > (count < many ? most_slender : most_slender_of_many);
+      const bool is_slender = slender > (count < many    ? most_slender
+                                         : count < tower ? most_slender_of_many
+                                                         : most_slender_of_a_tower);
       if (!is_row || count < 2 || is_slender || row.area <= most || skips_levels(levels, row)) {
         continue;
       }

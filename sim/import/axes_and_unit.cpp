@@ -234,20 +234,27 @@ bool is_plate(const Eigen::Vector3d& size, int axis) {
   return std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) > times * size[axis];
 }
 
-/// The axes for which the signs of a building speak, and those of its storeys folded into one.
+/// The axes for which the signs of a building speak, and those of its storeys folded into one; how
+/// many even storeys there are along each.
 struct Voted {
   std::optional<int> whole, folded;
+  std::array<int, 3> storeys{};
 };
 
 Voted voted_axes(const Mesh& mesh) {
   const auto [low, high] = extent_of(mesh);
+  Voted voted;
   std::array<Heights, 3> whole, folded;
   for (int axis = 0; axis < 3; ++axis) {
     whole[axis] = folded[axis] = {low[axis], high[axis] - low[axis], false};
     const std::optional<EvenStoreys> storeys = even_storeys(mesh, axis);
-    if (storeys) folded[axis] = {storeys->first, storeys->height, true};
+    if (!storeys) continue;
+    folded[axis] = {storeys->first, storeys->height, true};
+    voted.storeys[axis] = storeys->count;
   }
-  return {voted_axis(mesh, whole), voted_axis(mesh, folded)};
+  voted.whole = voted_axis(mesh, whole);
+  voted.folded = voted_axis(mesh, folded);
+  return voted;
 }
 
 /// The axis for which the signs of the whole building speak; unless it is a plate, only if those of
@@ -256,7 +263,15 @@ std::optional<int> axis_by_signs(const Voted& voted,
                                  const FloorsByAxis& floors,
                                  const Eigen::Vector3d& size) {
   const std::optional<int> up = voted.whole;
-  if (!up || is_plate(size, *up)) return up;
+  if (!up) return {};
+  if (is_plate(size, *up)) {
+    // So is a slender tower on its side.
+    constexpr int many = 5;
+    const auto is_tower = [&](int axis) {
+      return voted.storeys[axis] >= many && may_end(floors, axis);
+    };
+    return is_tower((*up + 1) % 3) || is_tower((*up + 2) % 3) ? std::nullopt : up;
+  }
   if (voted.folded != up) return {};
   for (const int other : {(*up + 1) % 3, (*up + 2) % 3}) {
     if (may_end(floors, other) && is_wide(floors, size, other)) return {};
@@ -270,6 +285,7 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   if (mesh.triangles.empty() && mesh.lines.empty()) {
     throw Error(place, "has no surface", "give --up");
   }
+  if (const std::optional<int> up = axis_of_ground(mesh)) return *up;
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   const Triangles triangles = different_triangles(mesh);

@@ -9,28 +9,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_grammar.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
-
-/// Levenshtein distance: insertions, deletions and replacements between two words.
-std::size_t edit_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row[to.size()];
-}
 
 /// The line of that number, from 1, without the blanks around it.
 std::string_view trimmed_line(std::string_view text, std::size_t number) {
@@ -74,21 +59,6 @@ std::string shown_value(const toml::node& node) {
     list += (list.empty() ? "" : ", ") + shown_value(value);
   }
   return "[" + list + "]";
-}
-
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
-  constexpr std::size_t most_bytes = 100;
-  word = word.substr(0, most_bytes);
-  std::string best;
-  std::size_t best_distance = std::string::npos;
-  for (const std::string_view candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 void TomlReader::fail(toml::source_index line,

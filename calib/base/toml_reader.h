@@ -22,9 +22,6 @@ toml::table parse_toml(std::string_view text, const std::string& place);
 /// A value as it may be written in a file, on one line; "a table" of a table.
 std::string shown_value(const toml::node& node);
 
-/// The known word with the smallest edit distance.
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
-
 /// Typed access to parsed TOML. Every error gives the file and the line.
 class TomlReader {
  public:

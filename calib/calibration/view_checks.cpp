@@ -139,6 +139,13 @@ class PairCheck {
  private:
   std::string cameras() const { return fmt::format("cameras {} and {}", first_, second_); }
 
+  /// Whether the board looks the same after a quarter turn.
+  bool is_square_board() const {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& point : observations_.target_m) box.extend(point);
+    return std::abs(box.sizes().x() - box.sizes().y()) < 1e-3 * box.sizes().x();
+  }
+
   void complain_if_turned_throughout(std::size_t as_is) const {
     const std::size_t n = consensus_.pairs().size();
     const Agreement turned = agreement(consensus_, PairReading::turned);
@@ -147,7 +154,8 @@ class PairCheck {
                 fmt::format("its corners are numbered half a turn (180 degrees) away from those "
                             "of camera {} in {} of {} frames",
                             first_, turned.count, n),
-                "reverse the order of the corners in one of the two cameras");
+                "reverse the order of the corners in one of the two cameras, or turn its images by "
+                "180 degrees");
   }
 
   void complain_of_pairing(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
@@ -186,7 +194,12 @@ class PairCheck {
         "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
         "or are paired wrongly, or the cameras moved relative to each other",
         agreeing, n);
-    const std::string cure = "check the pairing; hold the board still or trigger both at once";
+    std::string cure = "check the pairing; hold the board still or trigger both at once";
+    if (is_square_board()) {
+      cure +=
+          "; the corners of a square board may be numbered a quarter turn apart if one camera "
+          "is mounted so";
+    }
     if (n >= 4) throw Error(cameras(), fault, cure);
     diagnosis.trust_warnings.push_back(cameras() + ": " + fault + "; " + cure);
   }

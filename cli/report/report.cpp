@@ -30,6 +30,7 @@
 #include "cli/report/study_figures.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
+#include "cli/simulation/study_run.h"
 #include "sim/study/study.h"
 #include "sim/world.h"
 
@@ -88,6 +89,7 @@ LoadedStudy load(const std::string& folder, Session& session) {
   if (results.blocks_done == 0) {
     throw Error(folder, "contains no finished block", "run the study first");
   }
+  tell_changed_programs(results, session);
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
                                           results.blocks_done, results.blocks_total));

@@ -20,6 +20,7 @@
 #include "cli/simulation/export_tables.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
+#include "cli/simulation/study_run.h"
 #include "sim/study/study.h"
 
 namespace vernier::cli {
@@ -50,6 +51,7 @@ void run(const ExportArguments& options, Session& session) {
   } else {
     rows = export_cells(study, results, options.settings, options.output, file);
   }
+  tell_changed_programs(results, session);
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
                                           results.blocks_done, results.blocks_total));

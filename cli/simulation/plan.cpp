@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -34,6 +35,7 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/simulation/plan_doubts.h"
 #include "cli/simulation/plan_result.h"
 #include "sim/experiment.h"
 #include "sim/study/success_curve.h"
@@ -45,7 +47,6 @@ namespace vernier::cli {
 namespace {
 
 constexpr int most_plan_corners = 10'000;  ///< of a board
-constexpr double unsure_below = 0.8;       ///< confidence of an interval of a factor of two
 
 struct PlanArguments {
   std::string rig, depth, projection, board, world = "workshop", protocol = "path",
@@ -263,39 +264,6 @@ void widen_by_scale(const PlanResult& plan, const ViewPlanOptions& how, ViewsNee
   }
 }
 
-void judge(const PlanResult& plan, Session& session) {
-  constexpr double correlated = 1.5;
-  constexpr int few = 13;
-  if (plan.from_calibration && plan.known.taken < few && plan.known.inflation > correlated) {
-    session.warn(fmt::format(
-        "the residuals are correlated over the board, and {} views understate that: on real images "
-        "intervals held less often than stated, and more views were needed (docs/plan.md)",
-        plan.known.taken));
-  }
-  if (!plan.limit.empty()) {
-    session.add_trust_warning("no number of views reaches the target: " + plan.limit);
-    return;
-  }
-  if (!plan.needed) {
-    session.add_trust_warning(
-        "whether the target can be reached at all is not clear from so few trials; give more "
-        "--trials");
-    return;
-  }
-  const ViewsNeeded& needed = *plan.needed;
-  if (needed.interval.high > 2 * needed.interval.low + 1) {
-    session.add_trust_warning(
-        fmt::format("the number of views is known to {:.0f} to {:.0f} only: give more --trials",
-                    needed.interval.low, needed.interval.high));
-  } else if (needed.confidence < unsure_below) {
-    session.add_trust_warning(fmt::format(
-        "the number of views is known to a factor of two with {:.0f} % confidence only: {}",
-        100 * needed.confidence,
-        plan.from_calibration ? "take some more views and plan again"
-                              : "calibrate from five views or more and plan from these"));
-  }
-}
-
 void run(const PlanArguments& o, Session& session) {
   PlanResult plan;
   plan.target = target_of(o);
@@ -330,6 +298,8 @@ void run(const PlanArguments& o, Session& session) {
     plan.curve = sd_after(plan.known, what, plan.target.at_m, numbers, how);
     return 0;
   });
+  if (o.board.empty()) warn_of_lost_views(file.estimate, name, session);
+  warn_of_partial_frames(plan, file.estimate, session);
   judge(plan, session);
   session.result(plan_json(plan), plan_text(plan));
 }

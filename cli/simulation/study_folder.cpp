@@ -3,11 +3,14 @@
 #include "cli/simulation/study_folder.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -105,6 +108,11 @@ Json calibrations_json(const std::optional<CalibrationRecord>& record) {
 
 Json setting_json(const std::string& text) {
   if (text == "true" || text == "false") return text == "true";
+  // a seed may be larger than what a double holds
+  std::uint64_t whole = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), whole);
+  constexpr std::uint64_t most_exact = std::uint64_t{1} << 53;
+  if (fault == std::errc{} && end == text.data() + text.size() && whole > most_exact) return whole;
   const std::optional<double> value = to_real(text);
   return value ? Json(*value) : Json(text);
 }

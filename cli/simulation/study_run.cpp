@@ -15,6 +15,7 @@
 #include "cli/simulation/folder_claim.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/told/fresh_calibrations.h"
 
@@ -87,6 +88,25 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
   }
 }
 
+namespace {
+
+/// The error rate of its answers that a method states: its threshold or, of a program, which has
+/// none, the mean of what it stated.
+double stated_error_rate(const CellResult& cell) {
+  if (cell.cell.experiment.method != "program") {
+    return cell.cell.experiment.localiser.max_error_rate;
+  }
+  double sum = 0;
+  int answers = 0;
+  for (const ReliabilityBin& bin : cell.stated.reliability()) {
+    sum += bin.stated_error * bin.answers;
+    answers += bin.answers;
+  }
+  return answers > 0 ? sum / answers : 1;
+}
+
+}  // namespace
+
 void tell_understated_errors(const StudyResults& results, Session& session) {
   std::string first;
   int cells = 0;
@@ -95,7 +115,7 @@ void tell_understated_errors(const StudyResults& results, Session& session) {
     if (cell.stated.reliability().empty()) continue;  // states nothing
     const int answers = static_cast<int>(std::lround(s.coverage * s.trials));
     const int wrong = answers - static_cast<int>(std::lround(s.success * s.trials));
-    const double stated = cell.cell.experiment.localiser.max_error_rate;
+    const double stated = stated_error_rate(cell);
     if (answers == 0 || clopper_pearson_interval(wrong, answers, 0.98).low <= 2 * stated) continue;
     if (++cells > 1) continue;
     first =
@@ -107,6 +127,15 @@ void tell_understated_errors(const StudyResults& results, Session& session) {
       "{}{}: what it states does not hold there, as in a building that repeats or for a rig that "
       "is far off",
       first, cells > 1 ? fmt::format(", and so in {} more cells", cells - 1) : ""));
+}
+
+void tell_changed_programs(const StudyResults& results, Session& session) {
+  for (const std::string& command : results.changed_programs) {
+    session.warn(
+        fmt::format("the files of the program \"{}\" were others when the study ran, or "
+                    "are not found from here; the results are those of that run",
+                    command));
+  }
 }
 
 void tell_failed_calibrations(const StudyResults& results, Session& session) {

@@ -26,6 +26,9 @@ void tell_failed_trials(const StudyResults& results, Session& session);
 /// least twice as many at 98 % confidence.
 void tell_understated_errors(const StudyResults& results, Session& session);
 
+/// Says which programs of the user's own were others at the run.
+void tell_changed_programs(const StudyResults& results, Session& session);
+
 /// Says which cells have not a single calibration to tell: a reason not to trust them.
 void tell_failed_calibrations(const StudyResults& results, Session& session);
 

@@ -261,7 +261,8 @@ void add_world(CLI::App& app, Session& session) {
                    "office, home, hall or corridors; several, with commas, stand side by side")
       ->capture_default_str();
   maker->add_option("--size-m", o->size,
-                    "length,width,height in metres of the whole (default: what suits the kind)");
+                    "length,width,height in metres of the whole, which a net of corridors may not "
+                    "fill (default: what suits the kind)");
   maker->add_option("--name", o->name, "name of the world");
   maker->add_option("-o,--output", o->output, "world file")->required();
   check_files_written(*maker, {"--output"});

@@ -7,9 +7,13 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "calib/base/json_node.h"
+#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -25,7 +29,9 @@ namespace vernier::localise::internal {
 
 using stereo::ImageSegment;
 using stereo::StereoSegment;
+using vernier::internal::in_quotes;
 using vernier::internal::JsonNode;
+using vernier::internal::misspelt_word;
 using vernier::internal::rig_json::cameras_json;
 using vernier::internal::rig_json::parse_cameras;
 
@@ -51,7 +57,7 @@ LineKind parse_kind(const JsonNode& node) {
   for (const LineKind kind : {LineKind::vertical, LineKind::level, LineKind::oblique}) {
     if (word == kind_name(kind)) return kind;
   }
-  throw Error(node.place(), vernier::internal::in_quotes(word) + " is no kind of line",
+  throw Error(node.place(), in_quotes(word) + " is no kind of line",
               "use vertical, level or oblique");
 }
 
@@ -180,6 +186,22 @@ Json segments_json(const std::vector<ImageSegment>& segments) {
   return json;
 }
 
+/// Keys of a look; others are passed over, but not those that are nearly one of these.
+const std::vector<std::string_view> view_keys{"cameras",  "mount",          "lines",
+                                              "segments", "image_lines_px", "monocular_lines_px",
+                                              "corners",  "turn_rad"};
+
+void check_spelling(const JsonNode& node) {
+  std::vector<std::string_view> known = view_keys;
+  known.insert(known.end(), {"pose", "looks"});
+  for (const auto& [key, value] : node.json().items()) {
+    if (const auto meant = misspelt_word(key, known)) {
+      throw Error(node.place(), "has an unknown key " + vernier::internal::in_quotes(key),
+                  "did you mean \"" + *meant + "\"?");
+    }
+  }
+}
+
 PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
   PlaceView view;
   view.rig = rig;
@@ -277,15 +299,22 @@ Json looks_json(std::span<const Look> looks) {
 
 RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
   RecordedLooks recorded;
+  if (node.json().is_object()) check_spelling(node);
   if (node.has("pose")) recorded.pose = parse_pose(node.at("pose"));
   if (!node.has("looks")) {
     recorded.looks.push_back({parse_view(node, rig), 0});
     return recorded;
   }
+  for (const std::string_view key : view_keys) {
+    if (!node.has(std::string(key))) continue;
+    throw Error(node.place(), fmt::format("has \"{}\" beside \"looks\"", key),
+                "put it into each of the looks");
+  }
   const std::size_t looks = entries(node, "looks", most_looks);
   if (looks == 0) throw Error(node.at("looks").place(), "is empty", "give at least one");
   for (std::size_t i = 0; i < looks; ++i) {
     const JsonNode look = node.at("looks").at(i);
+    if (look.json().is_object()) check_spelling(look);
     const double turn = look.has("turn_rad") ? parse_angle(look.at("turn_rad")) : 0;
     if (i == 0 && turn != 0) {
       throw Error(look.at("turn_rad").place(), "is not 0 for the first look",

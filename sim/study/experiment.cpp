@@ -75,7 +75,7 @@ PlaceView interpret(const Rig& told,
 Rig required(ToldRig told, const char* what, std::uint32_t number) {
   if (!told.failure.empty()) {
     throw Error(fmt::format("calibration for {} {}", what, number), told.failure,
-                "give the calibration more views");
+                "give a smaller psi_c (sources.calibration) or, with [calibration], more views");
   }
   return std::move(told.rig);
 }

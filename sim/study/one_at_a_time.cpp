@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"

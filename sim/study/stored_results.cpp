@@ -63,6 +63,12 @@ std::string StoredResults::instruction_sets() const {
   return note == notes_.end() ? "" : note->second;
 }
 
+std::map<std::string, std::size_t> StoredResults::cells() const {
+  std::map<std::string, std::size_t> found;
+  for (const auto& [cell, blocks] : blocks_) found.emplace(cell, blocks.size());
+  return found;
+}
+
 const std::vector<StoredResults::InFile>* StoredResults::places(const std::string& cell,
                                                                 int block) const {
   const auto of_cell = blocks_.find(cell);

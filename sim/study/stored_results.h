@@ -34,6 +34,9 @@ class StoredResults {
   /// The instruction sets that the results come from; empty if there are none.
   std::string instruction_sets() const;
 
+  /// The keys of the cells that have blocks, ascending, and how many.
+  std::map<std::string, std::size_t> cells() const;
+
   /// The number of trials of a block in the file that has most; 0: it is in none.
   int trials(const std::string& cell, int block) const { return count(cell, block).trials; }
   /// The same with its successes.

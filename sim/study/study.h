@@ -134,6 +134,8 @@ struct StudyResults {
   std::vector<std::string> machines;  ///< on which, the same
   std::string instruction_sets;       ///< "AVX2", or "AVX2, AVX3" where a mixture was allowed
   std::vector<Shard> missing_shards;  ///< that lack something, if stores of shards are there
+  /// Commands of programs whose files were others at the run: edited, or not found from here.
+  std::vector<std::string> changed_programs;
 };
 
 /// The store that a shard writes.

@@ -58,6 +58,9 @@ constexpr int ceiling_version = 3;
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
 
+constexpr const char* source_files = "sources.files";
+constexpr const char* localiser_files = "localiser.files";
+
 /// "1:0.5:0 2:1:1 " as query, `right` and `unaliased`; empty for other text.
 std::vector<std::pair<int, QueryCeiling>> parsed_ceilings(const std::string& text) {
   std::vector<std::pair<int, QueryCeiling>> parsed;
@@ -214,12 +217,20 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
     key["study.trials_per_block"] = study.file.trials_per_block;
   }
   if (const std::string& command = cell.experiment.sources.command; !command.empty()) {
-    key["sources.files"] = fingerprint(files_named_in(command));
+    key[source_files] = fingerprint(files_named_in(command));
   }
   if (cell.experiment.method == "lines") key["localiser.version"] = lines_version;
   if (cell.experiment.method == "program") {
-    key["localiser.files"] = fingerprint(files_named_in(cell.experiment.localiser.command));
+    key[localiser_files] = fingerprint(files_named_in(cell.experiment.localiser.command));
   }
+  return key.dump();
+}
+
+std::string without_program_files(const std::string& cell_key) {
+  nlohmann::ordered_json key = nlohmann::ordered_json::parse(cell_key, nullptr, false);
+  if (!key.is_object()) return cell_key;
+  key.erase(source_files);
+  key.erase(localiser_files);
   return key.dump();
 }
 

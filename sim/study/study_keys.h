@@ -24,6 +24,9 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& setting
 /// of another size use other maps per trial and are therefore stored under another key.
 std::string cell_key(const Study& study, const StudyCell& cell);
 
+/// The same without the content of programs' files, to find results of a program that has changed.
+std::string without_program_files(const std::string& cell_key);
+
 /// Everything that the noise-free views of the map depend on, but the true rig, which is one.
 std::string looks_key(const StudyCell& cell);
 

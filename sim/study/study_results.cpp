@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -81,6 +82,33 @@ ClusterCount count_of(const std::vector<TrialResult>& trials) {
   return {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())};
 }
 
+/// Where nothing is stored of a cell's program as it is now, takes what is stored of an earlier
+/// one, the most if there are several: a folder stays readable where it is moved to, and after the
+/// program was edited. Returns the commands.
+std::vector<std::string> take_earlier_programs(const Study& study,
+                                               const StoredResults& stored,
+                                               StudyWork& work) {
+  const std::map<std::string, std::size_t> cells = stored.cells();
+  std::set<std::string> commands;
+  for (std::size_t i = 0; i < work.cell_keys.size(); ++i) {
+    std::string& key = work.cell_keys[i];
+    const std::string bare = without_program_files(key);
+    if (bare == key || cells.contains(key)) continue;
+    const std::string* most = nullptr;
+    for (const auto& [cell, blocks] : cells) {
+      const bool is_more = most == nullptr || blocks > cells.at(*most);
+      if (is_more && without_program_files(cell) == bare) most = &cell;
+    }
+    if (most == nullptr) continue;
+    key = *most;
+    const ExperimentSettings& settings = study.file.cells[i].experiment;
+    for (const std::string& command : {settings.sources.command, settings.localiser.command}) {
+      if (!command.empty()) commands.insert(command);
+    }
+  }
+  return {commands.begin(), commands.end()};
+}
+
 StudyResults visit_blocks(const Study& study,
                           const std::filesystem::path& folder,
                           Figures figures,
@@ -88,8 +116,10 @@ StudyResults visit_blocks(const Study& study,
   StoredResults stored;
   stored.add_folder(folder);
   stored.require_all_read();
-  const StudyWork work = study_work(study);
+  StudyWork work = study_work(study);
+  const std::vector<std::string> changed = take_earlier_programs(study, stored, work);
   StudyResults results = without_trials(study, work, stored);
+  results.changed_programs = changed;
   const std::size_t cells = results.cells.size();
   std::vector<std::vector<BlockJob>> jobs(cells);
   for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);

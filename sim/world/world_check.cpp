@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -196,6 +197,34 @@ std::optional<WorldError> size_error(const WorldDescription& description) {
                       "split the world, or leave out details"};
   }
   return route_size_error(description.route);
+}
+
+std::optional<WorldError> floor_error(const WorldDescription& description) {
+  constexpr double lowest_m = 0, highest_m = 4;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto take_in = [&](const FeatureSet& features, double z) {
+    const auto add = [&](const Eigen::Vector3d& point) {
+      low = std::min(low, z + point.z());
+      high = std::max(high, z + point.z());
+    };
+    for (const auto& [a, b] : features.segments_m) {
+      add(a);
+      add(b);
+    }
+    for (const auto& polygon : features.surfaces_m) {
+      for (const Eigen::Vector3d& point : polygon) add(point);
+    }
+    for (const Eigen::Vector3d& corner : features.corners_m) add(corner);
+  };
+  take_in(description.loose, 0);
+  const auto by_name = templates_by_name(description);
+  for (const WorldInstance& instance : description.instances) {
+    const auto found = by_name.find(instance.template_name);
+    if (found != by_name.end()) take_in(found->second->features, instance.at_m.z());
+  }
+  if (low > high || (low <= highest_m && high >= lowest_m)) return std::nullopt;
+  return WorldError{fmt::format("lies from {:g} to {:g} m, and the floor is at z = 0", low, high),
+                    "shift it, so that robots stand on its floor"};
 }
 
 void check_world(const WorldDescription& description) {

@@ -41,6 +41,9 @@ std::optional<WorldError> instance_error(const WorldInstance& instance, double t
 /// counted without instantiating. Instances of unknown templates count nothing.
 std::optional<WorldError> size_error(const WorldDescription& description);
 
+/// Something of the world must lie at a robot's height: its floor is z = 0.
+std::optional<WorldError> floor_error(const WorldDescription& description);
+
 /// Templates by name. Throws Error for a template without a name or with a duplicate one.
 std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescription& description);
 

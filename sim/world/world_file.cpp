@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/small_letters.h"
 #include "calib/base/toml_reader.h"
@@ -245,7 +246,9 @@ WorldDescription WorldReader::read(const toml::table& root) {
 
 }  // namespace
 
-WorldDescription parse_world(const std::string& text, const std::string& place) {
+namespace {
+
+WorldDescription read_tables_and_rows(const std::string& text, const std::string& place) {
   std::optional<WrittenRows> written = take_written_rows(text);
   if (!written) return WorldReader(place).read(parse_toml(text, place));
   WorldDescription world = WorldReader(place).read(parse_toml(written->rest, place));
@@ -260,6 +263,14 @@ WorldDescription parse_world(const std::string& text, const std::string& place) 
   join(taken.surfaces_m, world.loose.surfaces_m);
   join(taken.corners_m, world.loose.corners_m);
   if (const auto fault = size_error(world)) throw Error(place, fault->fault, fault->remedy);
+  return world;
+}
+
+}  // namespace
+
+WorldDescription parse_world(const std::string& text, const std::string& place) {
+  WorldDescription world = read_tables_and_rows(text, place);
+  if (const auto fault = floor_error(world)) throw Error(place, fault->fault, fault->remedy);
   return world;
 }
 

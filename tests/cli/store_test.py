@@ -132,6 +132,29 @@ class Readers(Store):
         self.assertEqual(contents(out), before)
         out.chmod(0o755)
 
+    def test_results_of_a_program_that_has_changed_or_moved_are_read(self):
+        program = self.folder / 'own.py'
+        program.write_text(
+            'import json, sys\n'
+            'nodes = json.loads(sys.stdin.readline())["nodes"]\n'
+            'first = [sys.stdin.readline() for _ in range(nodes)][0]\n'
+            'print(json.dumps({"ready": True}), flush=True)\n'
+            'for line in sys.stdin:\n'
+            '    print(json.dumps({"status": "unsure"}), flush=True)\n')
+        self.file.write_text(STUDY + '[localiser]\nmethod = "program"\ncommand = "python3 own.py"\n')
+        ran = json.loads(self.run_study(cwd=self.folder).stdout)
+        told = 'the files of the program "python3 own.py" were others when the study ran'
+        for change in (lambda: None, lambda: program.write_text('import sys\n')):
+            change()
+            elsewhere = self.works('study', 'status', self.out, '--json', cwd='/')
+            self.assertIn(told, elsewhere.stderr)
+            self.assertEqual(untimed(elsewhere.stdout), untimed(json.dumps(ran)))
+            here = self.works('study', 'status', self.out, '--json', cwd=self.folder)
+            self.assertEqual(untimed(here.stdout), untimed(json.dumps(ran)))
+            self.assertEqual(told in here.stderr, program.read_text() == 'import sys\n')
+        self.works('export', self.out, '-o', self.folder / 'cells.csv', cwd='/')
+        self.works('report', self.out, '--no-proof', '-q', '-o', self.folder / 'r.html', cwd='/')
+
     def test_a_disk_mounted_for_reading_is_read(self):
         out = self.finished()
         before = contents(out)

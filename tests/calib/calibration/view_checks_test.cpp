@@ -87,7 +87,9 @@ TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
   EXPECT_EQ(
       complaint_of(good_),
       "camera 1: its corners are numbered half a turn (180 degrees) away from those of camera "
-      "0 in 13 of 13 frames; reverse the order of the corners in one of the two cameras");
+      "0 in 13 of 13 frames; reverse the order of the corners in one of the two cameras, or turn "
+      "its images by "
+      "180 degrees");
 }
 
 TEST_P(ViewChecks, BothCamerasTurnedInAFrameIsNoFault) {

@@ -287,6 +287,32 @@ TEST(WorldFile, NamesAMissingOrWrongHeader) {
             "w.world.toml:2: version 2 is not supported; supported: 1");
 }
 
+// A robot would stand above or below all of it, and see nothing.
+TEST(WorldFile, FloorsAreAtZero) {
+  const auto between = [](double low, double high) {
+    WorldDescription world;
+    world.loose.segments_m = {{{0, 0, low}, {0, 0, high}}};
+    return world;
+  };
+  const auto fault = [&](double low, double high) {
+    return message_of(format_world(between(low, high)));
+  };
+  EXPECT_EQ(fault(-5, -2.4),
+            "w.world.toml: lies from -5 to -2.4 m, and the floor is at z = 0; shift it, so that "
+            "robots stand on its floor");
+  EXPECT_NE(fault(5, 7.6), "");
+  for (const auto& [low, high] : {std::pair(-5.0, 0.0), {0.0, 30.0}, {3.9, 9.0}, {-3.0, 9.0}}) {
+    EXPECT_NO_THROW(parse_world(format_world(between(low, high)), "w"));
+  }
+  WorldDescription of_template = between(5, 7);
+  of_template.templates = {{"lamp", of_template.loose}};
+  of_template.loose = {};
+  of_template.instances = {{"lamp", {1, 1, -4}, 0}};
+  EXPECT_NO_THROW(parse_world(format_world(of_template), "w"));
+  of_template.instances[0].at_m.z() = 0;
+  EXPECT_THROW(parse_world(format_world(of_template), "w"), Error);
+}
+
 TEST(WorldFile, NamesTheLineOfASyntaxError) {
   const std::string message = message_of(kHead + "name = \n");
   EXPECT_EQ(message.rfind("w.world.toml:3: not TOML: ", 0), 0u) << message;

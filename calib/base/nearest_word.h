@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier::internal {
+
+/// The known word with the smallest edit distance.
+std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
+
+/// The known word that is meant by one that is none: at an edit distance of 1, or 2 from six
+/// letters on. Nothing for a known word.
+std::optional<std::string> misspelt_word(std::string_view word,
+                                         const std::vector<std::string_view>& known);
+
+}  // namespace vernier::internal

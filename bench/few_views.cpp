@@ -92,10 +92,13 @@ void print_row(const Setup& setup, int views, int sets, std::uint64_t seed) {
       const test::NoisyBoard seen = test::noisy_board(truth, setup.board, made, setup.noise);
       const RigEstimate estimate = calibrate(seen.board.observations, options);
       const Eigen::VectorXd error = difference(estimate.rig, truth);
+      if (!estimate.covariance || !estimate.covariance_mvb) throw Error("rig", "no covariance", "");
       const Eigen::MatrixXd& P = estimate.covariance->matrix;
+      const Eigen::LLT<Eigen::MatrixXd> factor(P);
+      if (factor.info() != Eigen::Success) throw Error("covariance", "is not positive", "");
       const auto p = static_cast<double>(error.size());
       of_bound += error.dot(estimate.covariance_mvb->llt().solve(error)) / p;
-      of_default.push_back(error.dot(P.llt().solve(error)) / p);
+      of_default.push_back(error.dot(factor.solve(error)) / p);
       const Eigen::ArrayXd sigma = P.diagonal().array().sqrt();
       inside += static_cast<double>((error.array().abs() < 1.96 * sigma).count()) / p;
     } catch (const Error&) {

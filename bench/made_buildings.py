@@ -6,8 +6,8 @@
     made_buildings.py PROGRAM [--seed 1] [--buildings 300] [--jobs 2] [--keep FOLDER]
 
 A building has 1 to 9 storeys, a plan of one to three rectangles, walls of boxes or of single sheets, slabs or
-single floors, façades by the storey or over all storeys, with windows or blank, and perhaps: a higher ground
-floor, a basement, a parapet, a pitched roof, columns, a stair, a plot with a fence, a storey of another plan on top.
+single floors, façades by the storey, with windows or blank, or blank over all storeys, and perhaps: a higher ground
+floor, a basement, a parapet, a pitched roof, columns, a stair, a plot with a fence.
 Every third one is written with each axis up. Prints, by number of storeys, how often the axis was right,
 asked for, or wrong without a word; with the axis given, how often the number of storeys was right, and
 how often a world has a route on the lowest.
@@ -121,8 +121,8 @@ class Building:
     def wing(self, plan):
         x0, y0, x1, y1 = plan
         sides = ((x0, y0, x1, y0), (x0, y1, x1, y1), (x0, y0, x0, y1), (x1, y0, x1, y1))
-        columns = sorted(self.chance.uniform(x0 + 2, x1 - 2) for _ in range(self.chance.randint(0, int((x1 - x0) / 4))))
-        columns = [x for i, x in enumerate(columns) if i == 0 or x - columns[i - 1] > 1.2]
+        partitions = sorted(self.chance.uniform(x0 + 2, x1 - 2) for _ in range(self.chance.randint(0, int((x1 - x0) / 4))))
+        partitions = [x for i, x in enumerate(partitions) if i == 0 or x - partitions[i - 1] > 1.2]
         middle = y0 + (y1 - y0) * self.chance.uniform(0.35, 0.65) if self.maybe(0.6) else None
         same_plan = self.maybe(0.7)
         for k, (low, high) in enumerate(zip(self.floors, self.floors[1:])):
@@ -133,7 +133,7 @@ class Building:
                     length = max(side[2] - side[0], side[3] - side[1])
                     self.wall(*side, low, top, self.facade_gaps(length, k == 0 and i == 0))
             shift = 0 if same_plan else self.chance.uniform(-0.5, 0.5)
-            for x in columns:
+            for x in partitions:
                 gaps = [(0.8, 1.7, 0, DOOR_HEAD_M)]
                 if middle is None:
                     self.wall(x + shift, y0, x + shift, y1, low, top, gaps)

@@ -4,21 +4,26 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace vernier::internal {
 namespace {
 
-/// Levenshtein distance: insertions, deletions and replacements between two words.
+/// Insertions, deletions, replacements and exchanges of neighbours between two words (optimal
+/// string alignment).
 std::size_t edit_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
+  std::vector<std::size_t> before, last, row(to.size() + 1);
   for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = row[0];
+    before = std::move(last);
+    last = row;
     row[0] = i;
     for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+      const std::size_t replaced = last[j - 1] + (from[i - 1] == to[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
     }
   }
   return row[to.size()];
@@ -48,9 +53,8 @@ std::string nearest_word(std::string_view word, const std::vector<std::string_vi
 
 std::optional<std::string> misspelt_word(std::string_view word,
                                          const std::vector<std::string_view>& known) {
-  constexpr std::size_t long_word = 6;
   const Nearest best = nearest(word, known);
-  if (best.distance == 0 || best.distance > (word.size() < long_word ? 1U : 2U)) return {};
+  if (best.distance != 1 || best.word.front() != word.front()) return {};
   return best.word;
 }
 

@@ -12,8 +12,8 @@ namespace vernier::internal {
 /// The known word with the smallest edit distance.
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
 
-/// The known word that is meant by one that is none: at an edit distance of 1, or 2 from six
-/// letters on. Nothing for a known word.
+/// The known word that is meant by one that is none: behind its first letter one is missing, too
+/// much or another, or two are exchanged. Nothing for a known word.
 std::optional<std::string> misspelt_word(std::string_view word,
                                          const std::vector<std::string_view>& known);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/export_tables.h"
+#include "cli/simulation/study_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,12 +67,9 @@ class SettingColumns {
     for (const std::string& key : keys_) {
       Setting& setting = settings_.emplace_back();
       for (const StudyCell& cell : study.file.cells) setting.values.push_back(value_of(cell, key));
-      constexpr std::size_t most_digits = 15;  // that a double holds: a seed may have more
       setting.is_number =
           std::all_of(setting.values.begin(), setting.values.end(), [](const std::string& value) {
-            const bool is_long = value.size() > most_digits &&
-                                 value.find_first_not_of("0123456789") == std::string::npos;
-            return value.empty() || (!is_long && to_real(value).has_value());
+            return value.empty() || (!is_beyond_double(value) && to_real(value).has_value());
           });
       setting.characters = longest(setting.values);
     }

@@ -300,7 +300,7 @@ void run(const PlanArguments& o, Session& session) {
   });
   if (o.board.empty()) warn_of_lost_views(file.estimate, name, session);
   warn_of_partial_frames(plan, file.estimate, session);
-  judge(plan, session);
+  warn_of_doubtful_plan(plan, session);
   session.result(plan_json(plan), plan_text(plan));
 }
 

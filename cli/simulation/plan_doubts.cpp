@@ -22,7 +22,7 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
   if (has_views || !rig.calibration || rig.calibration->views == 0) return;
   session.warn(fmt::format(
       "{}: its {} views are not in this file, as after convert: they do not count, and board, "
-      "distance and noise are those of a datasheet; calibrate these two cameras from their corners "
+      "distance and noise are those of a datasheet; calibrate its cameras from their corners "
       "to count them, or say how the board is seen with --board, --square-m, --board-distance-m "
       "and "
       "--pixel-sigma",
@@ -46,7 +46,7 @@ void warn_of_partial_frames(const PlanResult& plan, const RigEstimate& rig, Sess
       partial, views_of_frame.size(), 1 / (1 - std::min(share, 0.99))));
 }
 
-void judge(const PlanResult& plan, Session& session) {
+void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
   constexpr double unsure_below = 0.8;  // confidence of an interval of a factor of two
   constexpr double correlated = 1.5;
   constexpr int few = 13;

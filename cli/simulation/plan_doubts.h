@@ -18,6 +18,6 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
 void warn_of_partial_frames(const PlanResult& plan, const RigEstimate& rig, Session& session);
 
 /// Why a plan is not to be trusted.
-void judge(const PlanResult& plan, Session& session);
+void warn_of_doubtful_plan(const PlanResult& plan, Session& session);
 
 }  // namespace vernier::cli

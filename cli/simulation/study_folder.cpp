@@ -106,13 +106,25 @@ Json calibrations_json(const std::optional<CalibrationRecord>& record) {
 
 }  // namespace
 
-Json setting_json(const std::string& text) {
-  if (text == "true" || text == "false") return text == "true";
-  // a seed may be larger than what a double holds
+namespace {
+
+std::optional<std::uint64_t> to_whole(const std::string& text) {
   std::uint64_t whole = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), whole);
+  if (fault != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return whole;
+}
+
+}  // namespace
+
+bool is_beyond_double(const std::string& text) {
   constexpr std::uint64_t most_exact = std::uint64_t{1} << 53;
-  if (fault == std::errc{} && end == text.data() + text.size() && whole > most_exact) return whole;
+  return to_whole(text).value_or(0) > most_exact;
+}
+
+Json setting_json(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  if (is_beyond_double(text)) return *to_whole(text);
   const std::optional<double> value = to_real(text);
   return value ? Json(*value) : Json(text);
 }

@@ -12,6 +12,9 @@
 
 namespace vernier::cli {
 
+/// Whether text is a whole number that a double does not hold, as a large seed.
+bool is_beyond_double(const std::string& text);
+
 /// A setting as a JSON number, Boolean or string.
 Json setting_json(const std::string& text);
 

@@ -15,7 +15,6 @@
 #include "cli/simulation/folder_claim.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
-#include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/told/fresh_calibrations.h"
 
@@ -91,18 +90,12 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
 namespace {
 
 /// The error rate of its answers that a method states: its threshold or, of a program, which has
-/// none, the mean of what it stated.
+/// none, the mean of what it stated of them.
 double stated_error_rate(const CellResult& cell) {
   if (cell.cell.experiment.method != "program") {
     return cell.cell.experiment.localiser.max_error_rate;
   }
-  double sum = 0;
-  int answers = 0;
-  for (const ReliabilityBin& bin : cell.stated.reliability()) {
-    sum += bin.stated_error * bin.answers;
-    answers += bin.answers;
-  }
-  return answers > 0 ? sum / answers : 1;
+  return cell.stated.mean_of_answers();
 }
 
 }  // namespace
@@ -133,7 +126,8 @@ void tell_changed_programs(const StudyResults& results, Session& session) {
   for (const std::string& command : results.changed_programs) {
     session.warn(
         fmt::format("the files of the program \"{}\" were others when the study ran, or "
-                    "are not found from here; the results are those of that run",
+                    "are not found from here; the results are those of that run, and the study "
+                    "would begin anew",
                     command));
   }
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -187,16 +188,16 @@ Json segments_json(const std::vector<ImageSegment>& segments) {
 }
 
 /// Keys of a look; others are passed over, but not those that are nearly one of these.
-const std::vector<std::string_view> view_keys{"cameras",  "mount",          "lines",
-                                              "segments", "image_lines_px", "monocular_lines_px",
-                                              "corners",  "turn_rad"};
+constexpr std::array<std::string_view, 8> view_keys{
+    "cameras", "mount",   "lines", "segments", "image_lines_px", "monocular_lines_px",
+    "corners", "turn_rad"};
 
 void check_spelling(const JsonNode& node) {
-  std::vector<std::string_view> known = view_keys;
-  known.insert(known.end(), {"pose", "looks"});
+  std::vector<std::string_view> known{"pose", "looks"};
+  known.insert(known.end(), view_keys.begin(), view_keys.end());
   for (const auto& [key, value] : node.json().items()) {
     if (const auto meant = misspelt_word(key, known)) {
-      throw Error(node.place(), "has an unknown key " + vernier::internal::in_quotes(key),
+      throw Error(node.place(), "has an unknown key " + in_quotes(key),
                   "did you mean \"" + *meant + "\"?");
     }
   }
@@ -302,6 +303,9 @@ RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>
   if (node.json().is_object()) check_spelling(node);
   if (node.has("pose")) recorded.pose = parse_pose(node.at("pose"));
   if (!node.has("looks")) {
+    if (node.has("turn_rad")) {
+      throw Error(node.at("turn_rad").place(), "is of no look", "give \"looks\", or leave it out");
+    }
     recorded.looks.push_back({parse_view(node, rig), 0});
     return recorded;
   }
@@ -315,6 +319,12 @@ RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>
   for (std::size_t i = 0; i < looks; ++i) {
     const JsonNode look = node.at("looks").at(i);
     if (look.json().is_object()) check_spelling(look);
+    for (const char* key : {"pose", "looks"}) {
+      if (look.has(key)) {
+        throw Error(look.at(key).place(), "is inside a look",
+                    "put it beside \"looks\", or leave it out");
+      }
+    }
     const double turn = look.has("turn_rad") ? parse_angle(look.at("turn_rad")) : 0;
     if (i == 0 && turn != 0) {
       throw Error(look.at("turn_rad").place(), "is not 0 for the first look",

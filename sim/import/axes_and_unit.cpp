@@ -285,10 +285,10 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
   if (mesh.triangles.empty() && mesh.lines.empty()) {
     throw Error(place, "has no surface", "give --up");
   }
-  if (const std::optional<int> up = axis_of_ground(mesh)) return *up;
   const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = high - low;
   const Triangles triangles = different_triangles(mesh);
+  if (const std::optional<int> up = axis_of_ground(mesh, triangles)) return *up;
   FloorsByAxis floors;
   for (int axis = 0; axis < 3; ++axis) floors[axis] = inner_floors(mesh, triangles, axis);
   const Voted voted = voted_axes(with_joined_faces(mesh));

@@ -161,39 +161,55 @@ std::optional<InnerFloors> inner_floors(const Mesh& mesh, const Triangles& trian
   return found;
 }
 
-std::optional<int> axis_of_ground(const Mesh& mesh) {
+namespace {
+
+/// Whether level surface lies around all that is higher than a fence if this axis is up.
+bool has_ground(const Mesh& mesh, const Triangles& triangles, int axis) {
   constexpr double beyond = 1.2;         // times what stands on it
   constexpr double least_rim = 0.02;     // of that, on every side: a wing of an L has none
   constexpr double thickest = 0.02;      // of the whole: it may be a slab
+  constexpr double thickest_up = 0.1;    // of the height
   constexpr double least_share = 0.5;    // of its bounding box
-  constexpr double highest_fence = 0.6;  // of the whole
-  if (mesh.triangles.empty()) return {};
+  constexpr double highest_fence = 0.6;  // of the height
   const auto [low, high] = extent_of(mesh);
-  const double thick = thickest * (high - low).norm();
-  for (int axis = 0; axis < 3; ++axis) {
-    Eigen::AlignedBox3d ground, rest;
-    double area = 0;
-    for (const auto& t : mesh.triangles) {
-      const Corners corners = corners_of(mesh, t);
-      const double top = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
-      const bool is_ground = top <= low[axis] + thick;
-      if (!is_ground && top < low[axis] + highest_fence * (high[axis] - low[axis])) continue;
-      for (const Eigen::Vector3d& corner : corners) (is_ground ? ground : rest).extend(corner);
-      if (!is_ground) continue;
-      area += 0.5 * std::abs((corners[1] - corners[0]).cross(corners[2] - corners[0])[axis]);
+  const double height = high[axis] - low[axis];
+  const double top = low[axis] + std::min(thickest * (high - low).norm(), thickest_up * height);
+  const double fence = low[axis] + highest_fence * height;
+  Eigen::AlignedBox3d ground, rest;
+  double twice_area = 0;  // of both faces, if it is a slab
+  for (const auto& t : triangles) {
+    const Corners corners = corners_of(mesh, t);
+    const double most = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
+    const bool is_level = std::abs(normal_of(corners)[axis]) > floor_cosine;
+    if (is_level && most <= top) {
+      twice_area += std::abs((corners[1] - corners[0]).cross(corners[2] - corners[0])[axis]);
+      for (const Eigen::Vector3d& corner : corners) ground.extend(corner);
+    } else if (most > fence) {
+      for (const Eigen::Vector3d& corner : corners) rest.extend(corner);
     }
-    if (ground.isEmpty() || rest.isEmpty()) continue;
-    const int one = (axis + 1) % 3, other = (axis + 2) % 3;
-    const auto reaches_beyond = [&](int along) {
-      const double length = rest.sizes()[along];
-      return ground.sizes()[along] >= beyond * length &&
-             ground.min()[along] <= rest.min()[along] - least_rim * length &&
-             ground.max()[along] >= rest.max()[along] + least_rim * length;
-    };
-    const bool is_full = area >= least_share * ground.sizes()[one] * ground.sizes()[other];
-    if (reaches_beyond(one) && reaches_beyond(other) && is_full) return axis;
   }
-  return {};
+  if (ground.isEmpty() || rest.isEmpty()) return false;
+  const int one = (axis + 1) % 3, other = (axis + 2) % 3;
+  const auto reaches_beyond = [&](int along) {
+    const double length = rest.sizes()[along];
+    return ground.sizes()[along] >= beyond * length &&
+           ground.min()[along] <= rest.min()[along] - least_rim * length &&
+           ground.max()[along] >= rest.max()[along] + least_rim * length;
+  };
+  const double box = ground.sizes()[one] * ground.sizes()[other];
+  return reaches_beyond(one) && reaches_beyond(other) && 0.5 * twice_area >= least_share * box;
+}
+
+}  // namespace
+
+std::optional<int> axis_of_ground(const Mesh& mesh, const Triangles& triangles) {
+  std::optional<int> found;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!has_ground(mesh, triangles, axis)) continue;
+    if (found) return {};
+    found = axis;
+  }
+  return found;
 }
 
 bool is_of_sheets(const Mesh& mesh, const Triangles& triangles) {

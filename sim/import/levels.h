@@ -42,10 +42,10 @@ Triangles different_triangles(const Mesh& mesh);
 /// another surface meets it. For a welded mesh about 10 m large, and its different triangles.
 std::optional<InnerFloors> inner_floors(const Mesh& mesh, const Triangles& triangles, int axis);
 
-/// The axis at whose lower end level surface lies that reaches beyond all else but fences, by a
-/// fifth of its length and of its width at least: the ground around a building. Nothing without
-/// any.
-std::optional<int> axis_of_ground(const Mesh& mesh);
+/// The one axis at whose lower end level surface lies that reaches beyond all else but fences, by a
+/// fifth of its length and of its width, and by a fiftieth on every side: the ground around a
+/// building. Nothing without any, and where two axes have one.
+std::optional<int> axis_of_ground(const Mesh& mesh, const Triangles& triangles);
 
 /// Whether a welded mesh has surfaces without thickness: an edge of a solid has two faces, or four
 /// where two solids meet, and one of a sheet often one or three.

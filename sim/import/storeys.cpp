@@ -24,6 +24,7 @@ constexpr double least_walls = 0.2;   // length at their lower ends, of that of 
 constexpr double least_floor = 0.25;  // level surface, of the bounding box of the walls on it
 constexpr double least_passed_floor = 0.5;  // that walls pass by, of the floor below it
 constexpr double thickest_slab_m = 0.4;
+constexpr std::size_t most_levels = 200;                    // of which the largest are looked at
 constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin or end
 
 long bin_of(double z) { return std::lround(z / level_m); }
@@ -143,13 +144,17 @@ std::vector<Walls> starts_of(const Surfaces& surfaces) {
   return starts;
 }
 
-/// Area of the floor at a height, as far as it lies in a box; of the box without one.
+/// The area of what lies below a passed floor: of the smallest surface at the height of the floor
+/// below that is large enough to be it, since the ground around a house may lie there too; without
+/// any that of the plan's box.
 double area_below(const Surfaces& surfaces, double z, const Eigen::AlignedBox2d& box) {
-  double area = 0;
-  for (const auto& [bin, level] : surfaces.up) {
-    if (std::abs(level.z() - z) < floor_above_m) area = std::max(area, level.amount);
+  double area = box.volume();
+  for (const auto& [bin, level] : surfaces.level) {
+    if (std::abs(level.z() - z) > floor_above_m || level.amount < least_floor * box.volume())
+      continue;
+    area = std::min(area, level.amount);
   }
-  return area > 0 ? std::min(area, box.volume()) : box.volume();
+  return area;
 }
 
 /// Whether walls of two storeys pass by a level surface, which is half as large as the floor below:
@@ -178,12 +183,13 @@ void add_passed_floors(const Surfaces& surfaces,
                        std::vector<double>& heights) {
   std::vector<AtHeight> levels;
   for (const ByHeight* of : {&surfaces.up, &surfaces.level}) {  // a sheet may face down
-    const auto begin = static_cast<std::ptrdiff_t>(levels.size());
-    for (const auto& [bin, level] : *of) levels.push_back(level);
-    std::stable_sort(levels.begin() + begin, levels.end(),
+    std::vector<AtHeight> some;
+    for (const auto& [bin, level] : *of) some.push_back(level);
+    std::stable_sort(some.begin(), some.end(),
                      [](const AtHeight& a, const AtHeight& b) { return a.amount > b.amount; });
+    some.resize(std::min(some.size(), most_levels));
+    levels.insert(levels.end(), some.begin(), some.end());
   }
-  const double largest = levels.empty() ? 0 : levels[0].amount;
   for (const AtHeight& level : levels) {
     const double z = level.z();
     double below = -std::numeric_limits<double>::infinity();
@@ -192,8 +198,7 @@ void add_passed_floors(const Surfaces& surfaces,
       is_near = is_near || std::abs(height - z) < lowest_storey_m;
       if (height < z) below = std::max(below, height);
     }
-    // Those much smaller than all others are looked at no further: there may be many.
-    if (is_near || std::isinf(below) || level.amount < 0.02 * largest) continue;
+    if (is_near || std::isinf(below)) continue;
     if (is_passed_floor(level, below, least_length, surfaces)) heights.push_back(z);
   }
 }

@@ -30,6 +30,10 @@ void StatedErrors::add(const TrialResult& trial) {
   if (!std::isfinite(trial.error_m)) return;  // no guess
   states_probabilities_ |= trial.probability > 0;
   const double stated = std::clamp(1 - trial.probability, 0.0, 1.0);
+  if (trial.answered()) {
+    ++answered_;
+    stated_of_answers_ += stated;
+  }
   const bool wrong = trial.error_m > success_radius_m;
   const auto above = std::upper_bound(borders.begin(), borders.end() - 1, stated);
   Count& range = by_range_[static_cast<std::size_t>(above - borders.begin()) - 1];

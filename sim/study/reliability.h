@@ -32,6 +32,9 @@ class StatedErrors {
  public:
   void add(const TrialResult& trial);
 
+  /// Mean of what was stated of the trials that were answered; 0 without any.
+  double mean_of_answers() const { return answered_ > 0 ? stated_of_answers_ / answered_ : 0; }
+
   /// In ranges of about half a decade: a reliability diagram (Murphy and Winkler, Applied
   /// Statistics 26, 1977). Trials without a guess are left out, and so are ranges without answers.
   /// Empty for a method that states no probabilities.
@@ -47,7 +50,8 @@ class StatedErrors {
   };
   std::array<Count, 12> by_range_{};  // of the stated error rate
   std::array<Count, 13> up_to_{};     // at each threshold
-  int trials_ = 0;
+  int trials_ = 0, answered_ = 0;
+  double stated_of_answers_ = 0;  // sum
   bool states_probabilities_ = false;
 };
 

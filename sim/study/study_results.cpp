@@ -89,22 +89,22 @@ std::vector<std::string> take_earlier_programs(const Study& study,
                                                const StoredResults& stored,
                                                StudyWork& work) {
   const std::map<std::string, std::size_t> cells = stored.cells();
+  std::map<std::string, std::string> most;  // by what they have in common
+  for (const auto& [cell, blocks] : cells) {
+    const auto [found, is_new] = most.emplace(without_program_files(cell), cell);
+    if (!is_new && blocks > cells.at(found->second)) found->second = cell;
+  }
   std::set<std::string> commands;
   for (std::size_t i = 0; i < work.cell_keys.size(); ++i) {
     std::string& key = work.cell_keys[i];
     const std::string bare = without_program_files(key);
     if (bare == key || cells.contains(key)) continue;
-    const std::string* most = nullptr;
-    for (const auto& [cell, blocks] : cells) {
-      const bool is_more = most == nullptr || blocks > cells.at(*most);
-      if (is_more && without_program_files(cell) == bare) most = &cell;
-    }
-    if (most == nullptr) continue;
-    key = *most;
+    const auto found = most.find(bare);
+    if (found == most.end()) continue;
+    key = found->second;
     const ExperimentSettings& settings = study.file.cells[i].experiment;
-    for (const std::string& command : {settings.sources.command, settings.localiser.command}) {
-      if (!command.empty()) commands.insert(command);
-    }
+    if (!settings.sources.command.empty()) commands.insert(settings.sources.command);
+    if (settings.method == "program") commands.insert(settings.localiser.command);
   }
   return {commands.begin(), commands.end()};
 }

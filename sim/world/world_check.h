@@ -41,7 +41,8 @@ std::optional<WorldError> instance_error(const WorldInstance& instance, double t
 /// counted without instantiating. Instances of unknown templates count nothing.
 std::optional<WorldError> size_error(const WorldDescription& description);
 
-/// Something of the world must lie at a robot's height: its floor is z = 0.
+/// Something of the world must lie at a robot's height: its floor is z = 0. Asked of files only; a
+/// world made in a program may be a part of another.
 std::optional<WorldError> floor_error(const WorldDescription& description);
 
 /// Templates by name. Throws Error for a template without a name or with a duplicate one.

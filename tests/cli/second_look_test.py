@@ -277,9 +277,12 @@ class Study(cli_test.Case):
     def test_more_wrong_answers_than_stated_are_said(self):
         done = self.run_sure("'probability': 0.9999")
         self.assertRegex(done.stderr, r'warning: \d+ of 40 answers of cell "study.seed = 1" are wrong, where the '
-                                      r'localiser states 1 %, and so in 1 more cells: what it states does not hold')
+                                      r'localiser states 0\.01 %, and so in 1 more cells: what it states does not hold')
         again = vernier('study', 'status', 'out', cwd=self.folder)
-        self.assertIn('are wrong, where the localiser states 1 %', again.stderr)
+        self.assertIn('are wrong, where the localiser states 0.01 %', again.stderr)
+
+    def test_who_states_what_it_errs_is_not_blamed(self):
+        self.assertNotIn('are wrong', self.run_sure("'probability': 0.01").stderr)
 
     def test_who_states_nothing_is_not_held_to_it(self):
         self.assertNotIn('are wrong', self.run_sure("'looks': 1").stderr)

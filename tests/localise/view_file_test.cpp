@@ -193,6 +193,9 @@ TEST(ViewFile, NamesWhatIsWrong) {
       {R"({"segments":[],"looks":[{"lines":[]}]})", ":1", "\"segments\" beside"},
       {R"({"mout":{"height_m":1,"pitch_rad":0},"lines":[]})", ":1", "did you mean \"mount\"?"},
       {R"({"looks":[{"turn_rad":0,"camera":[],"lines":[]}]})", "looks[0]", "\"cameras\"?"},
+      {R"({"lnies":[],"corners":[]})", ":1", "\"lines\"?"},
+      {R"({"looks":[{"pose":[1,2,0],"lines":[]}]})", "looks[0].pose", "inside a look"},
+      {R"({"turn_rad":1,"lines":[]})", "turn_rad", "of no look"},
       {R"({"looks":[{"turn_rad":1,"lines":[]}]})", "turn_rad", "not 0"},
       {R"({"lines":[],"segments":[]})", ":1", "segments and lines"},
       {R"({"lines":[],"lines":[]})", ":1", ""},
@@ -204,6 +207,15 @@ TEST(ViewFile, NamesWhatIsWrong) {
     EXPECT_NE(message.find(fault.place), std::string::npos) << message;
     EXPECT_NE(message.find(fault.fault), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+// Keys of other programs are passed over.
+TEST(ViewFile, MayHaveKeysOfItsOwn) {
+  const Folder folder;
+  for (const char* key : {"image", "time_s", "count", "amount", "comment"}) {
+    const auto file = folder.write("f.jsonl", "{\"" + std::string(key) + "\":1,\"lines\":[]}");
+    EXPECT_EQ(error_message([&] { read_views(file); }), "") << key;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/convex_faces.h"
 #include "sim/import/even_storeys.h"
+#include "sim/import/levels.h"
 #include "sim/import/mesh.h"
 #include "tests/sim/import/made_meshes.h"
 #include "tests/support/error_message.h"
@@ -155,10 +157,32 @@ TEST(Storeys, MayHaveWallsThatPassByTheirFloors) {
   Mesh hall = with_floors(shell(7, false), {7}, 0.3);
   add_box(hall, {0, 0, 2.8}, {4, 8, 3});  // a gallery over two fifths of it
   expect_floors(hall, {0});
-  // On a plot that is larger than the house.
-  Mesh house = with_floors(shell(6, false), {3, 6}, 0.3);
-  add_rectangle(house, {-20, -20, -0.005}, {50, 0, 0}, {0, 50, 0});
-  expect_floors(house, {0, 3});
+  // On a plot that is larger than the house, also than one with two wings and than two houses.
+  for (const double edge : {20.0, 60.0}) {
+    const auto on_plot = [&](Mesh mesh) {
+      add_rectangle(mesh, {-edge, -edge, -0.005}, {40 + 2 * edge, 0, 0}, {0, 40 + 2 * edge, 0});
+      return mesh;
+    };
+    expect_floors(on_plot(with_floors(shell(6, false), {3, 6}, 0.3)), {0, 3});
+    Mesh wings, houses;
+    const auto add_block = [](Mesh& mesh, double x, double y, double length, double width) {
+      for (const double at : {y, y + width - 0.2}) {
+        add_box(mesh, {x, at, 0}, {x + length, at + 0.2, 6});
+      }
+      for (const double at : {x, x + length - 0.2}) {
+        add_box(mesh, {at, y + 0.2, 0}, {at + 0.2, y + width - 0.2, 6});
+      }
+      for (const double z : {0.0, 3.0, 6.0}) {
+        add_box(mesh, {x, y, z - 0.3}, {x + length, y + width, z});
+      }
+    };
+    add_block(wings, 0, 0, 30, 8);
+    add_block(wings, 0, 8, 8, 22);
+    expect_floors(on_plot(wings), {0, 3});
+    add_block(houses, 0, 0, 10, 8);
+    add_block(houses, 25, 0, 10, 8);
+    expect_floors(on_plot(houses), {0, 3});
+  }
 }
 
 // Walls below a floor are of a storey, also where the ground has no slab.
@@ -186,6 +210,39 @@ TEST(Storeys, BeginWhereMostWallsDoAndNotAtThePlinth) {
   const std::vector<double> floors = floor_heights_m(convex_faces(welded(mesh, 5e-4)));
   ASSERT_EQ(floors.size(), 1u);
   EXPECT_NEAR(floors[0], 0, 0.05);
+}
+
+std::optional<int> ground_of(const Mesh& mesh) {
+  const Mesh joined = welded(mesh, 1e-4);
+  return axis_of_ground(joined, different_triangles(joined));
+}
+
+// Level ground around a building shows which axis is up, whatever its size, with a fence or not; a
+// façade that is longer than a wing is none.
+TEST(AxesAndUnit, AreShownByTheGround) {
+  for (const int up : {0, 1, 2}) {
+    for (const double edge : {2.0, 20.0, 150.0}) {
+      for (const double slab_m : {0.0, 0.2}) {
+        Mesh mesh = test::house();
+        const double x = 8.2 + edge, y = 3 + edge;
+        if (slab_m > 0) {
+          add_box(mesh, {-edge, -edge, -0.05 - slab_m}, {x, y, -0.05});
+        } else {
+          add_rectangle(mesh, {-edge, -edge, -0.05}, {x + edge, 0, 0}, {0, y + edge, 0});
+        }
+        EXPECT_EQ(ground_of(turned_and_scaled(mesh, up, 1)), up) << edge << " " << slab_m;
+        add_box(mesh, {-edge, -edge, 0}, {x, -edge + 0.1, 1.3});  // a fence
+        add_box(mesh, {-edge, y - 0.1, 0}, {x, y, 1.3});
+        EXPECT_EQ(ground_of(turned_and_scaled(mesh, up, 1)), up) << edge << " " << slab_m;
+      }
+    }
+    EXPECT_FALSE(ground_of(turned_and_scaled(test::house(), up, 1)));
+    EXPECT_FALSE(ground_of(turned_and_scaled(two_storeys(), up, 1)));
+    Mesh wings;
+    add_box(wings, {0, 0, 0}, {27, 8, 4});
+    add_box(wings, {0, 8, 0}, {16, 15, 3});
+    EXPECT_FALSE(ground_of(turned_and_scaled(wings, up, 1)));
+  }
 }
 
 TEST(AxesAndUnit, AreRecognised) {

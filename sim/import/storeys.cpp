@@ -24,7 +24,7 @@ constexpr double least_walls = 0.2;   // length at their lower ends, of that of 
 constexpr double least_floor = 0.25;  // level surface, of the bounding box of the walls on it
 constexpr double least_passed_floor = 0.5;  // that walls pass by, of the floor below it
 constexpr double thickest_slab_m = 0.4;
-constexpr std::size_t most_levels = 200;                    // of which the largest are looked at
+constexpr std::size_t most_passed_levels = 200;             // of which the largest are looked at
 constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin or end
 
 long bin_of(double z) { return std::lround(z / level_m); }
@@ -187,7 +187,7 @@ void add_passed_floors(const Surfaces& surfaces,
     for (const auto& [bin, level] : *of) some.push_back(level);
     std::stable_sort(some.begin(), some.end(),
                      [](const AtHeight& a, const AtHeight& b) { return a.amount > b.amount; });
-    some.resize(std::min(some.size(), most_levels));
+    some.resize(std::min(some.size(), most_passed_levels));
     levels.insert(levels.end(), some.begin(), some.end());
   }
   for (const AtHeight& level : levels) {

@@ -12,6 +12,10 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import cli_test
+
 PROGRAM = None
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATASHEET = ROOT / 'docs/examples/datasheet.json'
@@ -55,6 +59,18 @@ class Plan(Base):
         # As the old names of options; the same numbers at every call.
         self.assertEqual(now, self.json('plan', '--target-depth-sigma-m', '0.01', '--at-m', '5',
                                         '--rig', 'nominal'))
+
+    def test_frames_that_one_camera_sees_are_said(self):
+        rows = [row for row in cli_test.board_lines()
+                if not row[0].isdigit() or row.split(',')[1] == '0' or int(row.split(',')[0]) % 2]
+        (self.folder / 'o.csv').write_text('\n'.join(rows))
+        self.json('calibrate', '--observations', 'o.csv', '--size', '640x480', '--no-model-check', '-o', 'rig.json')
+        words = ('--depth-error', '0.02@2m')
+        self.assertIn('6 of 12 frames are not seen by all cameras', self.call('plan', 'rig.json', *words).stderr)
+        self.assertIn('about 2.0 times as many more', self.call('plan', 'rig.json', *words).stderr)
+        self.assertNotIn('not seen by all', self.call('plan', 'nominal', *words).stderr)
+        self.json('convert', 'rig.json', '--cameras', 'right,left', '-o', 'pair.json')
+        self.assertIn('its 12 views are not in this file', self.call('plan', 'pair.json', *words).stderr)
 
     def test_more_is_needed_for_less(self):
         views = [self.json('plan', 'nominal', '--projection-error', f'{px}@5m')['views']

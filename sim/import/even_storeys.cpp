@@ -20,7 +20,7 @@ constexpr double even = 0.02;       // of a storey
 constexpr double most_slender = 3;  // height by the narrower side of the plan
 constexpr double most_slender_of_many = 4.5;
 constexpr double most_slender_of_a_tower = 8;
-constexpr int many = 5, tower = 7;  // storeys
+constexpr int many = 5, tower = 6;  // storeys
 constexpr double half_way = 0.15;   // of a storey, from its middle
 constexpr std::size_t most_levels = 200;
 

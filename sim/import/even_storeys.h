@@ -20,8 +20,8 @@ struct EvenStoreys {
 /// lies a storey like the lower; of more, less than two heights of a storey may be left below and
 /// above (3.5 above four levels and more: a roof), and none half way between two of them. Of
 /// several such rows that with most surface. None in a mesh without triangles, and in one more than
-/// three times as high as its plan is wide (4.5 times with five storeys and more): walls at even
-/// distances in a row of rooms are no floors of a tower.
+/// three times as high as its plan is wide (4.5 times with five storeys, 8 with six and more):
+/// walls at even distances in a row of rooms are no floors of a tower.
 std::optional<EvenStoreys> even_storeys(const Mesh& mesh, int axis);
 
 }  // namespace vernier::sim::internal

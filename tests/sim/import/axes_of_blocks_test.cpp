@@ -199,6 +199,27 @@ TEST(AxesAndUnit, OfRowsOfRoomsAreNotThoseOfATower) {
   }
 }
 
+// On its side a tower one room deep would be a wide and low building.
+TEST(AxesAndUnit, OfSlenderTowersAreRightOrAskedFor) {
+  int right = 0, all = 0;
+  for (const int storeys : {7, 8, 9}) {
+    for (const double width_m : {5.3, 6.5}) {
+      for (const double slab_m : {0.0, 0.25}) {
+        for (const double wall_m : {0.0, 0.1, 0.35}) {
+          Block block{31, width_m, storeys, 3.6, 4.3, {0.2, 0.45, 0.8}, {}, 0, slab_m, wall_m};
+          if (all % 2 == 1) block.along = {0.55};
+          const int up = all % 3;
+          const std::optional<int> found = up_of(turned_and_scaled(mesh_of(block), up, 1));
+          EXPECT_EQ(found.value_or(up), up) << storeys << " " << width_m << " " << slab_m;
+          right += found.has_value();
+          ++all;
+        }
+      }
+    }
+  }
+  RecordProperty("right", std::to_string(right) + " of " + std::to_string(all));
+}
+
 // Two storeys, the lower one higher, have no even row of floors.
 TEST(AxesAndUnit, OfTwoUnequalStoreysAreRecognised) {
   for (const double ground_m : {3.6, 4.2, 4.8}) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/export_tables.h"
-#include "cli/simulation/study_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +22,7 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "cli/program/text_table.h"
+#include "cli/simulation/study_folder.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "sim/experiment.h"

@@ -24,8 +24,7 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
       "{}: its {} views are not in this file, as after convert: they do not count, and board, "
       "distance and noise are those of a datasheet; calibrate its cameras from their corners "
       "to count them, or say how the board is seen with --board, --square-m, --board-distance-m "
-      "and "
-      "--pixel-sigma",
+      "and --pixel-sigma",
       name, rig.calibration->views));
 }
 

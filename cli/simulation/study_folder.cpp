@@ -104,10 +104,6 @@ Json calibrations_json(const std::optional<CalibrationRecord>& record) {
           {"depth_sd_m", json_number(record->depth_sd_m)}};
 }
 
-}  // namespace
-
-namespace {
-
 std::optional<std::uint64_t> to_whole(const std::string& text) {
   std::uint64_t whole = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), whole);

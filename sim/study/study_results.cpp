@@ -82,6 +82,18 @@ ClusterCount count_of(const std::vector<TrialResult>& trials) {
   return {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())};
 }
 
+/// The keys of stored cells by what is left of them without the files of programs: of several the
+/// one that has most blocks.
+std::map<std::string, std::string> without_programs(
+    const std::map<std::string, std::size_t>& cells) {
+  std::map<std::string, std::string> most;
+  for (const auto& [cell, blocks] : cells) {
+    const auto [found, is_new] = most.emplace(without_program_files(cell), cell);
+    if (!is_new && blocks > cells.at(found->second)) found->second = cell;
+  }
+  return most;
+}
+
 /// Where nothing is stored of a cell's program as it is now, takes what is stored of an earlier
 /// one, the most if there are several: a folder stays readable where it is moved to, and after the
 /// program was edited. Returns the commands.
@@ -89,18 +101,16 @@ std::vector<std::string> take_earlier_programs(const Study& study,
                                                const StoredResults& stored,
                                                StudyWork& work) {
   const std::map<std::string, std::size_t> cells = stored.cells();
-  std::map<std::string, std::string> most;  // by what they have in common
-  for (const auto& [cell, blocks] : cells) {
-    const auto [found, is_new] = most.emplace(without_program_files(cell), cell);
-    if (!is_new && blocks > cells.at(found->second)) found->second = cell;
-  }
+  std::map<std::string, std::string> earlier;  // made where it is needed
   std::set<std::string> commands;
   for (std::size_t i = 0; i < work.cell_keys.size(); ++i) {
     std::string& key = work.cell_keys[i];
+    if (cells.contains(key)) continue;
     const std::string bare = without_program_files(key);
-    if (bare == key || cells.contains(key)) continue;
-    const auto found = most.find(bare);
-    if (found == most.end()) continue;
+    if (bare == key) continue;
+    if (earlier.empty()) earlier = without_programs(cells);
+    const auto found = earlier.find(bare);
+    if (found == earlier.end()) continue;
     key = found->second;
     const ExperimentSettings& settings = study.file.cells[i].experiment;
     if (!settings.sources.command.empty()) commands.insert(settings.sources.command);

@@ -244,10 +244,6 @@ WorldDescription WorldReader::read(const toml::table& root) {
   return world;
 }
 
-}  // namespace
-
-namespace {
-
 WorldDescription read_tables_and_rows(const std::string& text, const std::string& place) {
   std::optional<WrittenRows> written = take_written_rows(text);
   if (!written) return WorldReader(place).read(parse_toml(text, place));

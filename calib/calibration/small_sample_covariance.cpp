@@ -13,13 +13,28 @@
 namespace vernier::internal {
 namespace {
 
-/// (I − H)^(-1/2) x for a symmetric H with eigenvalues in [0, 1). A view that alone determines a
-/// direction (eigenvalue 1) has no residual along it; its eigenvalue is limited to just below 1.
-Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) {
+/// The part of a view in the estimate, corrected for its leverage.
+struct Pull {
+  Eigen::VectorXd u;        ///< (I − H)^(-1/2) x
+  Eigen::MatrixXd missing;  ///< of E u uᵀ at a noise of 1, by directions it alone determines
+};
+
+/// For a symmetric H with eigenvalues in [0, 1]. A view that alone determines a direction
+/// (eigenvalue 1) has no residual along it and its pull there says nothing; eigenvalues are limited
+/// to just below 1.
+Pull corrected_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) {
+  constexpr double most = 0.999;
   const SymmetricEigen eigen(0.5 * (H + H.transpose()));
-  const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(0.999);
+  const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(1.0);
+  const Eigen::ArrayXd limited = h.min(most);
   const Eigen::MatrixXd& V = eigen.eigenvectors();
-  return V * ((1 - h).rsqrt() * (V.transpose() * x).array()).matrix();
+  Pull pull{V * ((1 - limited).rsqrt() * (V.transpose() * x).array()).matrix(), {}};
+  if (h.maxCoeff() > most) {
+    // E u uᵀ = V h (1 − h) / (1 − limited) Vᵀ, and should be V h Vᵀ
+    const Eigen::ArrayXd lost = h - h * (1 - h) / (1 - limited);
+    pull.missing = V * lost.matrix().asDiagonal() * V.transpose();
+  }
+  return pull;
 }
 
 /// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target by Ledoit and Wolf.
@@ -68,10 +83,12 @@ Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
     throw Error("small-sample covariance", "fewer than three frames", "give more views");
   }
   const Eigen::MatrixXd L = Cholesky(bound).lower();
-  Eigen::MatrixXd pulls(p, frames);
+  Eigen::MatrixXd pulls(p, frames), missing = Eigen::MatrixXd::Zero(p, p);
   for (Eigen::Index f = 0; f < frames; ++f) {
     const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
-    pulls.col(f) = correct_for_leverage(H, L.transpose() * equations.scores.col(f));
+    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
+    pulls.col(f) = pull.u;
+    if (pull.missing.size() > 0) missing += pull.missing;
   }
   Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
   if (equations.prior_information.size() > 0) {
@@ -80,9 +97,10 @@ Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
   }
   const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
   const double dimensions = data_share.trace();  // that the data determine
-  const Eigen::MatrixXd J = pulls * pulls.transpose();
-  const double inflation =
-      J.trace() / std::max(dimensions, 1e-9);  // mean variance over the bound's
+  const Eigen::MatrixXd scatter = pulls * pulls.transpose();
+  // mean variance over the bound's, where the scatter of views shows it
+  const double inflation = scatter.trace() / std::max(dimensions - missing.trace(), 1e-9);
+  const Eigen::MatrixXd J = scatter + inflation * missing;
   Eigen::MatrixXd shrunk;
   if (bound_of == BoundOf::random_effects) {
     shrunk = std::max(1.0, inflation) * data_share;

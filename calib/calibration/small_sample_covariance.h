@@ -27,9 +27,11 @@ enum class BoundOf { white_noise, random_effects };
 /// Wiesel, Eldar and Hero (2010), which does not believe the scatter of three or four. The factor
 /// is the variance of Student's t with ν degrees of freedom, since the scale is a mean square of
 /// few pulls; 4 a view was chosen on simulated sets, between smooth errors (3) and white noise (6).
-/// A prior of information P has the fraction G = Lᵀ P L: then the shrinkage target uses I − G
-/// instead of I and p − tr G instead of p, and G is added. Needs at least three frames (else
-/// Error).
+/// A direction that one view alone determines (an eigenvalue of H_f of 1), as the pose of a camera
+/// that shares a single frame with the others, has no scatter: tr J / p is over the other
+/// directions, and J has it there. A prior of information P has the fraction G = Lᵀ P L: then the
+/// shrinkage target uses I − G instead of I and p − tr G instead of p, and G is added. Needs at
+/// least three frames (else Error).
 ///
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of a few frames, is far from it in most directions: then α = 1 and tr J / p

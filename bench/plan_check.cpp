@@ -3,15 +3,16 @@
 //
 // Whether the number of views that `plan` names is the number that it takes.
 //
-//     plan_check [RIGS [FIRST_SEED [VIEWS]]]     simulated rigs; VIEWS so far, or 5 to 8 without
+//     plan_check [RIGS [FIRST_SEED [VIEWS [SHARE]]]]     simulated rigs
 //     plan_check --real CALIBRATION.json…        subsets of the views of real calibrations
 //
-// Simulated: rig, board, its distance and tilt, noise and lens are drawn; 5 to 8 views are taken
-// and calibrated, and a target is set, 0.5 to 0.8 of the standard deviation that these give at
-// present. The plan sees this calibration only. Then further views of the same kind are taken, one
-// by one, until the standard deviation by the true rig, the true poses and the true noise is at the
-// target: the number reached. It lies within the plan's interval or not. The rig is calibrated
-// again at the number that the plan names, and its error in depth compared with the target.
+// Simulated: rig, board, its distance and tilt, noise and lens are drawn; VIEWS, else 5 to 8 are
+// taken (of a SHARE of frames, so far and later, one camera's view is left out) and calibrated, and
+// a target is set, 0.5 to 0.8 of the standard deviation that these give at present. The plan sees
+// this calibration only. Then further views of the same kind are taken, one by one, until the
+// standard deviation by the true rig, the true poses and the true noise is at the target: the
+// number reached. It lies within the plan's interval or not. The rig is calibrated again at the
+// number that the plan names, and its error in depth compared with the target.
 //
 // Real: a random order of the views; the first 5, 8 and 13 are calibrated and planned from. The
 // target is the standard deviation that the first 20 of the order have by the rig, the poses, the
@@ -149,7 +150,18 @@ struct Tallies {
   std::vector<double> errors_in_targets;
 };
 
-void try_simulated(std::uint64_t seed, int views, Tallies& tallies) {
+/// Without one of the two views in `share` of the frames, each camera's alike.
+BoardObservations partly_seen(BoardObservations all, double share, std::uint64_t seed) {
+  std::erase_if(all.views, [&](const BoardView& view) {
+    RandomStream draws(
+        {.seed = seed, .feature = static_cast<std::uint32_t>(view.frame), .source = 202});
+    const bool alone = draws.uniform() < share;
+    return alone && static_cast<std::uint32_t>(view.camera) == draws.below(2);
+  });
+  return all;
+}
+
+void try_simulated(std::uint64_t seed, int views, double share_alone, Tallies& tallies) {
   const Scene scene = draw_scene(seed);
   RandomStream draws({.seed = seed, .source = 201});
   if (views == 0) views = 5 + static_cast<int>(draws.below(4));
@@ -161,6 +173,7 @@ void try_simulated(std::uint64_t seed, int views, Tallies& tallies) {
   for (int i = 0; i < views; ++i) frames.push_back(i);
   try {
     all = simulate_board(scene.rig, scene.board, scene.views);
+    all.observations = partly_seen(all.observations, share_alone, seed);
     so_far = calibrate(at_frames(all.observations, frames), {.models = models_of(scene.rig)});
     known = knowledge_of(so_far, seed, "so far");
   } catch (const Error& error) {
@@ -192,10 +205,10 @@ void try_simulated(std::uint64_t seed, int views, Tallies& tallies) {
   }
 }
 
-void simulated(int rigs, std::uint64_t first_seed, int views) {
+void simulated(int rigs, std::uint64_t first_seed, int views, double share_alone) {
   Tallies tallies;
   for (int r = 0; r < rigs; ++r) {
-    try_simulated(first_seed + static_cast<std::uint64_t>(r), views, tallies);
+    try_simulated(first_seed + static_cast<std::uint64_t>(r), views, share_alone, tallies);
   }
   tallies.depth.print(fmt::format("depth at {} m", range_m));
   tallies.projection.print(fmt::format("projection at {} m", range_m));
@@ -275,5 +288,6 @@ int main(int argc, char** argv) {
   const auto number = [&](std::size_t i, int otherwise) {
     return i < words.size() ? std::atoi(words[i].c_str()) : otherwise;
   };
-  simulated(number(0, 100), static_cast<std::uint64_t>(number(1, 5001)), number(2, 0));
+  simulated(number(0, 100), static_cast<std::uint64_t>(number(1, 5001)), number(2, 0),
+            words.size() > 3 ? std::atof(words[3].c_str()) : 0);
 }

@@ -74,6 +74,11 @@ std::optional<BoardView> seen_by(const Rig& rig,
   return view;
 }
 
+bool must_see(int camera, const PlacementOptions& options) {
+  const std::vector<int>& all = options.cameras;
+  return all.empty() || std::find(all.begin(), all.end(), camera) != all.end();
+}
+
 std::vector<BoardView> seen_by_all(const Rig& rig,
                                    const Pose& T_first_board,
                                    const Target& target,
@@ -83,6 +88,10 @@ std::vector<BoardView> seen_by_all(const Rig& rig,
   int partial = 0;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     auto view = seen_by(rig, static_cast<int>(c), T_first_board, target, options);
+    if (!must_see(static_cast<int>(c), options)) {
+      if (view && view->ids.size() == all) views.push_back(std::move(*view));
+      continue;
+    }
     if (!view) return {};
     if (view->ids.size() < all) {
       const std::size_t least = std::max<std::size_t>(6, all / 4);
@@ -121,8 +130,10 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
                                        const std::vector<Eigen::Vector3d>& target_m,
                                        const PlacementOptions& options) {
   const Target target(target_m);
-  const Camera& left = rig.cameras.front();
-  const Eigen::Vector2d size = left.size_px.cast<double>();
+  const auto r = static_cast<std::size_t>(options.cameras.empty() ? 0 : options.cameras[0]);
+  const Camera& reference = rig.cameras[r];
+  const Pose T_first_reference = rig.T_camera_first[r].inverse();
+  const Eigen::Vector2d size = reference.size_px.cast<double>();
   const int n = options.places;
   std::vector<PlacedBoard> boards;
   for (int place = 0; place < n * n; ++place) {
@@ -130,15 +141,15 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
     const int column = place % n, row = place / n;
     const Eigen::Vector2d centre((column + 0.5) / n * size[0] - 0.5,
                                  (row + 0.5) / n * size[1] - 0.5);
-    const auto ray = try_unproject(left, centre);
+    const auto ray = try_unproject(reference, centre);
     if (!ray) continue;
     for (int k = 0; k < options.fills * options.angles * options.angles; ++k) {
       const int fill = k / (options.angles * options.angles);
       const int turn = k / options.angles % options.angles, tilt = k % options.angles;
       const double log_share = step_between(std::log(options.min_fill),
                                             std::log(options.greatest_fill), fill, options.fills);
-      const double z = std::max(left.f_px() * left.ax() * target.extent_m[0] / size[0],
-                                left.f_px() * target.extent_m[1] / size[1]) /
+      const double z = std::max(reference.f_px() * reference.ax() * target.extent_m[0] / size[0],
+                                reference.f_px() * target.extent_m[1] / size[1]) /
                        std::exp(log_share);
       const double most = options.greatest_angle_rad;
       BoardPlacement p{centre,
@@ -150,23 +161,31 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
       p.T_first_board.R =
           rotation_from_vector({0, p.turn_rad, 0}) * rotation_from_vector({p.tilt_rad, 0, 0});
       p.T_first_board.t = z * *ray - p.T_first_board.R * target.middle_m;
+      p.T_first_board = T_first_reference * p.T_first_board;
       std::vector<BoardView> views = seen_by_all(rig, p.T_first_board, target, options);
       if (!views.empty()) boards.push_back({p, std::move(views)});
     }
   }
   if (boards.empty()) {
-    throw Error("board", "no placement shows it whole in all cameras",
-                "use a larger board farther away, or let one camera see a part of it (--partly)");
+    throw Error(
+        "board",
+        options.cameras.empty() ? "no placement shows it whole in all cameras"
+                                : "no placement shows it whole in the cameras that are named",
+        rig.cameras.size() > 2 && options.cameras.empty()
+            ? "name the cameras that must see it (--cameras), or use a larger board farther "
+              "away"
+            : "use a larger board farther away, or let one camera see a part of it "
+              "(--partly)");
   }
   return boards;
 }
 
-std::string describe_placement(const BoardPlacement& p, const Camera& left) {
+std::string describe_placement(const BoardPlacement& p, const Camera& reference) {
   return fmt::format(
       "hold the board {:.2f} m away, its centre in the {} of the {} image ({:.0f}, {:.0f}), turned "
       "{}° about the vertical axis{}, tilted {}°{}",
-      p.distance_m, region(p.centre_px, left.size_px), left.name, p.centre_px[0], p.centre_px[1],
-      whole_degrees(p.turn_rad), nearer_edge(p.turn_rad, "right", "left"),
+      p.distance_m, region(p.centre_px, reference.size_px), reference.name, p.centre_px[0],
+      p.centre_px[1], whole_degrees(p.turn_rad), nearer_edge(p.turn_rad, "right", "left"),
       whole_degrees(p.tilt_rad), nearer_edge(p.tilt_rad, "upper", "lower"));
 }
 

@@ -34,29 +34,31 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& target_m) {
   return 0.5 * (low + high);
 }
 
-PoseCoordinates coordinates_of(const Pose& T_first_board, const Eigen::Vector3d& middle_m) {
-  const Eigen::Vector3d x = T_first_board * middle_m, w = vector_from_rotation(T_first_board.R);
+PoseCoordinates coordinates_of(const Pose& T_camera_board, const Eigen::Vector3d& middle_m) {
+  const Eigen::Vector3d x = T_camera_board * middle_m, w = vector_from_rotation(T_camera_board.R);
   return {std::log(x.z()), x.x() / x.z(), x.y() / x.z(), w.x(), w.y(), w.z()};
 }
 
 Pose pose_of(const PoseCoordinates& c, const Eigen::Vector3d& middle_m) {
-  Pose T_first_board;
-  T_first_board.R = rotation_from_vector({c[3], c[4], c[5]});
+  Pose T_camera_board;
+  T_camera_board.R = rotation_from_vector({c[3], c[4], c[5]});
   const double z = std::exp(c[0]);
-  T_first_board.t = Eigen::Vector3d(c[1] * z, c[2] * z, z) - T_first_board.R * middle_m;
-  return T_first_board;
+  T_camera_board.t = Eigen::Vector3d(c[1] * z, c[2] * z, z) - T_camera_board.R * middle_m;
+  return T_camera_board;
 }
 
-/// The noise-free corners of a pose; none if a camera does not see all of them.
+/// The noise-free corners of a pose; none if one of the cameras does not see all of them.
 std::optional<std::vector<BoardView>> seen_whole(const Rig& rig,
                                                  const std::vector<Eigen::Vector3d>& target_m,
                                                  const Pose& T_first_board,
+                                                 const std::vector<int>& cameras,
                                                  int frame) {
   std::vector<BoardView> views;
-  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+  for (const int camera : cameras) {
+    const auto c = static_cast<std::size_t>(camera);
     BoardView view;
     view.frame = frame;
-    view.camera = static_cast<int>(c);
+    view.camera = camera;
     for (std::size_t i = 0; i < target_m.size(); ++i) {
       const Eigen::Vector3d x = rig.T_camera_first[c] * (T_first_board * target_m[i]);
       if (!(x.z() > 1e-3)) return std::nullopt;
@@ -76,16 +78,18 @@ struct DrawnPoses {
   BoardState state;
 };
 
-/// `count` poses that all cameras see whole, uniform about the mean with these half-widths.
+/// `count` poses that the cameras see whole, uniform about the mean with these half-widths.
 DrawnPoses draw_poses(const Rig& rig,
                       const std::vector<Eigen::Vector3d>& target_m,
                       const Eigen::Vector2d& warp_m,
                       const PosePopulation& population,
                       const PoseCoordinates& half_width,
+                      const std::vector<int>& cameras,
                       int count,
                       RandomStream& draws) {
   const Eigen::Vector3d middle_m = middle_of(target_m);
   const auto shape_m = warped_target(target_m, warp_m);
+  const Pose T_first_camera = rig.T_camera_first[static_cast<std::size_t>(cameras[0])].inverse();
   DrawnPoses drawn;
   for (const Camera& camera : rig.cameras) drawn.observations.size_px.push_back(camera.size_px);
   drawn.observations.target_m = target_m;
@@ -95,15 +99,15 @@ DrawnPoses draw_poses(const Rig& rig,
   for (int tries = 0; static_cast<int>(drawn.poses.size()) < count; ++tries) {
     if (tries == most_tries) {
       throw Error("planned views", "hardly any pose like those given shows the whole board",
-                  "give views in which every camera sees all of the board");
+                  "give views in which cameras see all of the board");
     }
     PoseCoordinates c;
     for (std::size_t k = 0; k < pose_size; ++k) {
       c[k] = population.mean[k] + half_width[k] * draws.uniform(-1, 1);
     }
-    const Pose T_first_board = pose_of(c, middle_m);
+    const Pose T_first_board = T_first_camera * pose_of(c, middle_m);
     const auto frame = static_cast<int>(drawn.poses.size());
-    auto views = seen_whole(rig, shape_m, T_first_board, frame);
+    auto views = seen_whole(rig, shape_m, T_first_board, cameras, frame);
     if (!views) continue;
     for (BoardView& view : *views) drawn.observations.views.push_back(std::move(view));
     drawn.state.frames.push_back(frame);
@@ -136,15 +140,15 @@ double chi_squared(int dof, RandomStream& draws) {
 
 }  // namespace
 
-PosePopulation pose_population(const std::vector<Pose>& T_first_board,
+PosePopulation pose_population(const std::vector<Pose>& T_camera_board,
                                const std::vector<Eigen::Vector3d>& target_m) {
-  if (T_first_board.size() < 3) {
+  if (T_camera_board.size() < 3) {
     throw Error("plan", "fewer than three views do not show how the board is held",
                 "take more views");
   }
   const Eigen::Vector3d middle_m = middle_of(target_m);
   std::vector<PoseCoordinates> poses;
-  for (const Pose& pose : T_first_board) poses.push_back(coordinates_of(pose, middle_m));
+  for (const Pose& pose : T_camera_board) poses.push_back(coordinates_of(pose, middle_m));
   return moments(poses);
 }
 
@@ -170,6 +174,7 @@ std::vector<Eigen::MatrixXd> population_views(const Rig& rig,
                                               const std::vector<Eigen::Vector3d>& target_m,
                                               const Eigen::Vector2d& warp_m,
                                               const PosePopulation& population,
+                                              const std::vector<int>& cameras,
                                               int count,
                                               std::uint64_t seed,
                                               std::uint32_t number) {
@@ -179,15 +184,16 @@ std::vector<Eigen::MatrixXd> population_views(const Rig& rig,
   for (std::size_t k = 0; k < pose_size; ++k) half_width[k] = root_three * population.sd[k];
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
-    const auto taken =
-        moments(draw_poses(rig, target_m, warp_m, population, half_width, 60, draws).poses);
+    const auto taken = moments(
+        draw_poses(rig, target_m, warp_m, population, half_width, cameras, 60, draws).poses);
     for (std::size_t k = 0; k < pose_size; ++k) {
       if (!(taken.sd[k] > 0)) continue;
       half_width[k] *= std::clamp(population.sd[k] / taken.sd[k], 0.8, 1.25);
       half_width[k] = std::min(half_width[k], 2.0 * root_three * population.sd[k]);
     }
   }
-  const DrawnPoses drawn = draw_poses(rig, target_m, warp_m, population, half_width, count, draws);
+  const DrawnPoses drawn =
+      draw_poses(rig, target_m, warp_m, population, half_width, cameras, count, draws);
   return reduced_normal_equations(drawn.observations, drawn.state, 1).frame_information;
 }
 

@@ -42,8 +42,10 @@ std::vector<PreparedPool> prepared(const ViewKnowledge& known,
     PreparedPool ready{&pool, wanted.gradient * pool.free, Eigen::MatrixXd::Zero(p, p),
                        Eigen::MatrixXd::Zero(p, p)};
     for (const Eigen::MatrixXd& S : pool.taken) ready.taken += S;
-    for (const Eigen::MatrixXd& S : pool.views) ready.mean += S;
-    ready.mean /= static_cast<double>(pool.views.size());
+    for (const PlannedViews& kind : pool.following) {
+      const double weight = kind.share / static_cast<double>(kind.views.size());
+      for (const Eigen::MatrixXd& S : kind.views) ready.mean += weight * S;
+    }
     pools.push_back(std::move(ready));
   }
   return pools;
@@ -78,7 +80,7 @@ class Sequence {
   double sd() const { return noise_px_ * unit_sd(pool_.gradient, information_); }
 
   void add_view() {
-    const auto& views = pool_.pool->views;
+    const auto& views = kind().views;
     information_ += views[draws_.below(static_cast<std::uint32_t>(views.size()))];
     ++views_;
   }
@@ -114,6 +116,15 @@ class Sequence {
   }
 
  private:
+  const PlannedViews& kind() {
+    const auto& kinds = pool_.pool->following;
+    if (kinds.size() == 1) return kinds[0];
+    double left = draws_.uniform();
+    std::size_t k = 0;
+    while (k + 1 < kinds.size() && left > kinds[k].share) left -= kinds[k++].share;
+    return kinds[k];
+  }
+
   const PreparedPool& pool_;
   RandomStream draws_;
   double noise_px_;
@@ -173,6 +184,8 @@ ViewsNeeded views_needed(const ViewKnowledge& known,
   needed.confidence = options.confidence;
   if (needed.interval.high > options.widest * needed.interval.low) {
     std::tie(needed.interval, needed.confidence) = fullest_interval(numbers, options.widest);
+    needed.views = std::clamp(needed.views, static_cast<int>(needed.interval.low),
+                              static_cast<int>(needed.interval.high));
   }
   needed.is_reached = needed.interval.high < options.most_views;
   return needed;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,20 @@
 
 namespace vernier::internal {
 
+/// Views that could follow and that the same cameras see.
+struct PlannedViews {
+  double share = 1;                    ///< of all views that could follow
+  bool by_all = true;                  ///< all cameras see them
+  std::vector<Eigen::MatrixXd> views;  ///< information S_f of each, at 1 px; free x free
+};
+
 /// Views that could be taken, one guess of the rig and of how the board is held.
 struct ViewPool {
   Rig rig;
-  Eigen::MatrixXd free;  ///< directions that are estimated: parameters x free
+  Eigen::MatrixXd free;  ///< what is estimated moves the rig so: parameters x free
   std::vector<Eigen::MatrixXd>
       taken;  ///< information S_f of the views so far, at 1 px; free x free
-  std::vector<Eigen::MatrixXd> views;  ///< the same of views that could follow
+  std::vector<PlannedViews> following;  ///< shares that sum to 1
   Eigen::MatrixXd prior;  ///< information of the calibration's priors, free x free; empty: none
 };
 
@@ -35,7 +43,8 @@ struct ViewPool {
 /// within a view.
 struct ViewKnowledge {
   std::vector<ViewPool> pools;
-  int taken = 0;            ///< number of views so far
+  int taken = 0;            ///< number of views so far …
+  int taken_by_all = 0;     ///< … and of those that all cameras see
   double noise_px = 0;      ///< σ φ
   double inflation = 1;     ///< φ²
   double noise_log_sd = 0;  ///< standard deviation of the logarithm of σ φ
@@ -43,7 +52,9 @@ struct ViewKnowledge {
 
 /// From a calibration, by its evidence: σ φ is the noise of its residuals that varies smoothly over
 /// the board (calib/planning/smooth_noise.h). Each pool has views of the calibration's pose
-/// population, redrawn (calib/planning/view_population.h). Throws Error(`place`) if the estimate
+/// population, redrawn (calib/planning/view_population.h), one for the frames of each set of
+/// cameras that see the board (calib/planning/frame_kinds.h), in shares that are redrawn too; of a
+/// set with fewer than three frames these themselves. Throws Error(`place`) if the estimate
 /// has no evidence of board views, or of fewer than five. Priors of the calibration count.
 ViewKnowledge knowledge_of(const RigEstimate& calibration,
                            std::uint64_t seed,
@@ -58,6 +69,13 @@ ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
                                      const SimulatedBoardOptions& views,
                                      const std::string& place);
 
+/// The same for a rig of some of the cameras (calib/estimate/rig_part.h: part_of), by the views of
+/// all.
+ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& cameras);
+
+/// The same, if all cameras are to see every further view; nothing if none so far is seen so.
+std::optional<ViewKnowledge> with_views_by_all(const ViewKnowledge& known);
+
 struct ViewPlanOptions {
   double confidence = 0.95;  ///< of intervals
   double widest = 2;         ///< upper over lower end of an interval of views, at most
@@ -69,7 +87,8 @@ struct ViewPlanOptions {
 /// The number of views in all, those taken included and at least three, after which a standard
 /// deviation is at its target for the first time, as views are added one by one.
 struct ViewsNeeded {
-  int views = 0;           ///< the median; most_views if not reached
+  int views = 0;           ///< the median, or the end of the interval next to it; most_views if not
+                           ///< reached
   Interval interval;       ///< `confidence` of the sequences lie within
   double confidence = 0;   ///< that of the options, or less where the interval would be too wide
   bool is_reached = true;  ///< whether the upper end lies below most_views

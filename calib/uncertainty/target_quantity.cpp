@@ -185,4 +185,13 @@ TargetQuantity target_quantity(const Rig& rig, const std::string& what, double a
   return parameter_error(rig, what);
 }
 
+TargetQuantity target_quantity(const Rig& rig,
+                               const std::vector<int>& cameras,
+                               const std::string& what,
+                               double at_m) {
+  TargetQuantity wanted = target_quantity(part_of(rig, cameras), what, at_m);
+  wanted.gradient *= part_by_rig(rig, cameras);
+  return wanted;
+}
+
 }  // namespace vernier::internal

@@ -35,4 +35,11 @@ double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor);
 /// Throws Error for anything else, listing these, and if the rig lacks the cameras needed.
 TargetQuantity target_quantity(const Rig& rig, const std::string& what, double at_m);
 
+/// The same of some of the rig's cameras (calib/estimate/rig_part.h: part_of), to first order in
+/// the parameters of the whole rig.
+TargetQuantity target_quantity(const Rig& rig,
+                               const std::vector<int>& cameras,
+                               const std::string& what,
+                               double at_m);
+
 }  // namespace vernier::internal

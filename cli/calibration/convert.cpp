@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +18,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "cli/calibration/convert_formats.h"
+#include "cli/program/chosen_cameras.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
@@ -47,36 +46,12 @@ ImportOptions import_options(const ConvertArguments& options) {
   return import;
 }
 
-/// The words of a list such as "left,right".
-std::vector<std::string> listed(const std::string& list) {
-  std::vector<std::string> words;
-  std::istringstream in(list);
-  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
-  return words;
-}
-
 /// Keeps the cameras of a list such as "P2,P3", in its order, with their part of the covariance.
 /// The evidence, which is of all cameras, goes.
 void keep_cameras(ReadRig& read, const std::string& list) {
   if (list.empty()) return;
   RigEstimate& estimate = read.estimate;
-  const Rig& rig = estimate.rig;
-  std::vector<int> kept;
-  std::set<std::string> seen;
-  for (const std::string& name : listed(list)) {
-    std::size_t i = 0;
-    while (i < rig.cameras.size() && rig.cameras[i].name != name) ++i;
-    if (i == rig.cameras.size() || !seen.insert(name).second) {
-      std::string names;
-      for (const Camera& camera : rig.cameras) names += (names.empty() ? "" : ",") + camera.name;
-      throw Error("--cameras " + list,
-                  in_quotes(name) + (i == rig.cameras.size() ? " is none of the rig's cameras"
-                                                             : " is given twice"),
-                  "give some of " + names);
-    }
-    kept.push_back(static_cast<int>(i));
-  }
-  if (kept.empty()) throw Error("--cameras", "names no camera", "give some of the rig's");
+  const std::vector<int> kept = chosen_cameras(estimate.rig, list);
   const bool had_evidence = estimate.evidence.has_value();
   estimate = part_of(estimate, kept);
   if (had_evidence && !estimate.evidence) {

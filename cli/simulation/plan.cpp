@@ -30,6 +30,7 @@
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 #include "calib/uncertainty/target_quantity.h"
+#include "cli/program/chosen_cameras.h"
 #include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
@@ -48,8 +49,8 @@ namespace {
 constexpr int most_plan_corners = 10'000;  ///< of a board
 
 struct PlanArguments {
-  std::string rig, depth, projection, board, world = "workshop", protocol = "path",
-                                             method = "lines";
+  std::string rig, cameras, depth, projection, board, world = "workshop", protocol = "path",
+                                                      method = "lines";
   double success = 0, at_m = 5, square_m = 0.025, pixel_sigma_px = 0.2, pair_sigma_px = 0;
   double board_distance_m = 1, board_tilt_deg = 34;
   int trials = 300, threads = 0;
@@ -126,8 +127,9 @@ void know(const PlanArguments& o,
     plan.known =
         with_errors_of(name, [&] { return knowledge_of(without_effects(rig), o.seed, name); });
     const bool effects = rig.calibration && rig.calibration->effects;
-    plan.basis = fmt::format("the calibration {}{} and further views of the same kind", name,
-                             effects ? " (without the board's shape and motion)" : "");
+    plan.basis = fmt::format("the calibration {}{} and further views of the same kind{}", name,
+                             effects ? " (without the board's shape and motion)" : "",
+                             partial_frames_text(plan.known));
     return;
   }
   const std::string words = o.board.empty() ? "9x6" : o.board;
@@ -181,7 +183,8 @@ void allow_for_pixel_noise(const PlanArguments& o, PlanResult& plan) {
 /// The covariance after the views so far, or after ten of a datasheet's.
 Covariance reference_covariance(const ViewKnowledge& known) {
   const ViewPool& pool = known.pools[0];
-  const std::vector<Eigen::MatrixXd>& views = pool.taken.empty() ? pool.views : pool.taken;
+  const std::vector<Eigen::MatrixXd>& views =
+      pool.taken.empty() ? pool.following[0].views : pool.taken;
   constexpr std::size_t enough = 10;
   const std::size_t count = pool.taken.empty() ? std::min(enough, views.size()) : views.size();
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(pool.free.cols(), pool.free.cols());
@@ -269,7 +272,13 @@ void run(const PlanArguments& o, Session& session) {
   const std::string name = o.rig.empty() ? "nominal" : o.rig;
   const RigFile file = read_rig(find_rig(name));
   for (const std::string& warning : file.warnings) session.warn(warning);
+  const std::vector<int> cameras = chosen_cameras(file.estimate.rig, o.cameras);
+  if (plan.target.quantity != "projection") require_chosen_pair(file.estimate.rig, o.cameras, name);
   know(o, file.estimate, name, plan);
+  if (!o.cameras.empty()) {
+    plan.known = for_cameras(plan.known, cameras);
+    plan.basis += ", for the cameras " + o.cameras;
+  }
   refuse_unused_options(*o.app, plan.target, plan.from_calibration);
   if (plan.target.quantity == "success") {
     allow_for_success(o, plan, session);
@@ -282,6 +291,11 @@ void run(const PlanArguments& o, Session& session) {
     if (plan.sd_allowed) {
       plan.needed = views_needed(plan.known, what, plan.target.at_m, *plan.sd_allowed, how);
       if (plan.scale) widen_by_scale(plan, how, *plan.needed);
+      const auto better =
+          has_partial_frames(plan.known) ? with_views_by_all(plan.known) : std::nullopt;
+      if (better) {
+        plan.needed_by_all = views_needed(*better, what, plan.target.at_m, *plan.sd_allowed, how);
+      }
       if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
         plan.limit = fmt::format(
             "it takes more than {} of this kind; what limits is each "
@@ -298,7 +312,6 @@ void run(const PlanArguments& o, Session& session) {
     return 0;
   });
   if (o.board.empty()) warn_of_lost_views(file.estimate, name, session);
-  warn_of_partial_frames(plan, file.estimate, session);
   warn_of_doubtful_plan(plan, session);
   session.result(plan_json(plan), plan_text(plan));
 }
@@ -316,6 +329,9 @@ void add_plan(CLI::App& app, Session& session) {
   o->app = verb;
   verb->add_option("rig,--rig", o->rig,
                    "calibration with its board views, or a datasheet (default: nominal)");
+  verb->add_option("--cameras", o->cameras,
+                   "the cameras to plan for, as left,right (default: all; --depth-error and "
+                   "--success need two)");
   verb->add_option("--depth-error,--target-depth-sigma-m", o->depth,
                    "wanted standard deviation of the depth, metres, as 0.02 or 0.02@5m");
   verb->add_option("--projection-error,--target-projection-sigma-px", o->projection,

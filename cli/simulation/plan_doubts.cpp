@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <map>
 #include <string>
 
 #include "calib/board_observations.h"
@@ -22,27 +19,11 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
   if (has_views || !rig.calibration || rig.calibration->views == 0) return;
   session.warn(fmt::format(
       "{}: its {} views are not in this file, as after convert: they do not count, and board, "
-      "distance and noise are those of a datasheet; calibrate its cameras from their corners "
-      "to count them, or say how the board is seen with --board, --square-m, --board-distance-m "
-      "and --pixel-sigma",
+      "distance and noise are those of a datasheet; to count them plan from the file that has "
+      "them, "
+      "of all cameras, with --cameras, or say how the board is seen with --board, --square-m, "
+      "--board-distance-m and --pixel-sigma",
       name, rig.calibration->views));
-}
-
-void warn_of_partial_frames(const PlanResult& plan, const RigEstimate& rig, Session& session) {
-  constexpr double few = 0.1;  // of all frames
-  if (!plan.from_calibration) return;
-  const std::size_t cameras = rig.rig.cameras.size();
-  std::map<int, std::size_t> views_of_frame;
-  for (const BoardView& view : rig.evidence->observations.views) ++views_of_frame[view.frame];
-  const auto partial = static_cast<std::size_t>(
-      std::count_if(views_of_frame.begin(), views_of_frame.end(),
-                    [&](const auto& frame) { return frame.second < cameras; }));
-  const double share = static_cast<double>(partial) / static_cast<double>(views_of_frame.size());
-  if (share <= few) return;
-  session.warn(fmt::format(
-      "{} of {} frames are not seen by all cameras, and further views are planned as if all saw "
-      "them: of frames such as so far about {:.1f} times as many more are needed",
-      partial, views_of_frame.size(), 1 / (1 - std::min(share, 0.99))));
 }
 
 void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {

@@ -14,9 +14,6 @@ namespace vernier::cli {
 /// nothing.
 void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session& session);
 
-/// Frames that not all cameras see count as views so far, and further views are planned whole.
-void warn_of_partial_frames(const PlanResult& plan, const RigEstimate& rig, Session& session);
-
 /// Why a plan is not to be trusted.
 void warn_of_doubtful_plan(const PlanResult& plan, Session& session);
 

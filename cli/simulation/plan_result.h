@@ -33,6 +33,8 @@ struct PlanResult {
   double pixel_noise_sd = std::numeric_limits<double>::quiet_NaN();
   double pair_sigma_px = 0;  ///< included in the target if above 0
   std::optional<ViewsNeeded> needed;
+  /// If all cameras are to see every further view; only where some so far are seen by few.
+  std::optional<ViewsNeeded> needed_by_all;
   std::vector<SdAfter> curve;
   std::vector<SuccessAt> successes;  ///< of a success rate
   std::optional<ScaleNeeded> scale;
@@ -45,6 +47,12 @@ struct PlanResult {
     return needed ? std::optional(true) : std::nullopt;
   }
 };
+
+/// Whether some cameras did not see the board in some frames so far.
+bool has_partial_frames(const ViewKnowledge& known);
+
+/// " (6 of 36 seen by all cameras)"; empty if all are.
+std::string partial_frames_text(const ViewKnowledge& known);
 
 Json plan_json(const PlanResult& plan);
 std::string plan_text(const PlanResult& plan);

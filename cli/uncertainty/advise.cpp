@@ -12,6 +12,7 @@
 #include "calib/board/board_placement.h"
 #include "calib/board_target.h"
 #include "calib/calibration/solve_again.h"
+#include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -20,6 +21,7 @@
 #include "calib/rig_file.h"
 #include "calib/uncertainty/next_view.h"
 #include "calib/uncertainty/target_quantity.h"
+#include "cli/program/chosen_cameras.h"
 #include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
@@ -31,7 +33,7 @@ namespace {
 constexpr int most_board_corners = 10'000;  ///< of a board
 
 struct AdviseArguments {
-  std::string rig, reduce = "depth", board, covariance = "mvb";
+  std::string rig, cameras, reduce = "depth", board, covariance = "mvb";
   double at_m = 5, square_m = 0, pixel_sigma_px = 0;
   int views = 1, more = 10;
   bool partly = false;
@@ -46,6 +48,16 @@ struct Basis {
   CovarianceKind planned_on, stated;
   double bound_ratio = 1;  ///< honest sd of the target error divided by the bound's
 };
+
+TargetQuantity wanted_of(const AdviseArguments& options, const Rig& rig) {
+  const std::vector<int> cameras = chosen_cameras(rig, options.cameras);
+  const std::string& what = options.reduce;
+  if (what == "depth" || what == "rectification" || what == "baseline") {
+    require_chosen_pair(rig, options.cameras, what);
+  }
+  return options.cameras.empty() ? target_quantity(rig, what, options.at_m)
+                                 : target_quantity(rig, cameras, what, options.at_m);
+}
 
 std::string find_target(const AdviseArguments& options,
                         const RigEstimate& rig,
@@ -102,10 +114,10 @@ Basis find_basis(const AdviseArguments& options,
 
 double in_degrees(double rad) { return rad * 180 / std::numbers::pi; }
 
-Json view_json(const ScoredView& view, const Rig& rig, double scale) {
+Json view_json(const ScoredView& view, const Camera& reference, double scale) {
   const BoardPlacement& p = view.placement;
   const Eigen::Vector3d w = vector_from_rotation(p.T_first_board.R), t = p.T_first_board.t;
-  return {{"words", describe_placement(p, rig.cameras[0])},
+  return {{"words", describe_placement(p, reference)},
           {"rotation_rad", {w.x(), w.y(), w.z()}},
           {"translation_m", {t.x(), t.y(), t.z()}},
           {"centre_px", {p.centre_px.x(), p.centre_px.y()}},
@@ -132,12 +144,12 @@ std::string table_line(const ScoredView& view, double scale, const std::string& 
 std::string advice_text(const ViewAdvice& advice,
                         const TargetQuantity& wanted,
                         const Basis& basis,
-                        const Rig& rig) {
+                        const Camera& reference) {
   std::string text;
   for (std::size_t i = 0; i < advice.views.size(); ++i) {
     const ScoredView& view = advice.views[i];
     text += fmt::format("{}. {};\n   sd of the {}: {:.3g} before, {:.3g} {} after ({} lower)\n",
-                        i + 1, describe_placement(view.placement, rig.cameras[0]), wanted.name,
+                        i + 1, describe_placement(view.placement, reference), wanted.name,
                         basis.scale * view.sd_before, basis.scale * view.sd_after, wanted.unit,
                         percent_reduction(view));
   }
@@ -179,16 +191,19 @@ void run(const AdviseArguments& options, Session& session) {
                  ": advice is for the calibration without the board's shape and motion, "
                  "from the same corners");
   }
-  const TargetQuantity wanted = with_errors_of(
-      options.rig, [&] { return target_quantity(rig.rig, options.reduce, options.at_m); });
+  const TargetQuantity wanted =
+      with_errors_of(options.rig, [&] { return wanted_of(options, rig.rig); });
   const Basis basis = with_errors_of(options.rig, [&] { return find_basis(options, rig, wanted); });
   std::vector<Eigen::Vector3d> target_m;
   Eigen::Vector2d warp_m(0, 0);
   const std::string board = find_target(options, rig, target_m, warp_m);
+  const std::vector<int> chosen = chosen_cameras(rig.rig, options.cameras);
+  const std::vector<int> must_see = options.cameras.empty() ? std::vector<int>{} : chosen;
+  const Camera& reference = rig.rig.cameras[static_cast<std::size_t>(chosen[0])];
   std::vector<CandidateView> candidates;
   const ViewAdvice advice = with_errors_of(options.rig, [&] {
     candidates = candidate_views(rig.rig, target_m, warp_m, basis.pixel_sigma_px,
-                                 {.partly = options.partly});
+                                 {.cameras = must_see, .partly = options.partly});
     return advise_views(basis.factor, candidates, wanted,
                         {.views = options.views, .more = options.more});
   });
@@ -205,15 +220,15 @@ void run(const AdviseArguments& options, Session& session) {
             {"candidates", candidates.size()}};
   const auto list = [&](const std::vector<ScoredView>& views) {
     Json entries = Json::array();
-    for (const ScoredView& view : views) entries.push_back(view_json(view, rig.rig, basis.scale));
+    for (const ScoredView& view : views) entries.push_back(view_json(view, reference, basis.scale));
     return entries;
   };
   json["views"] = list(advice.views);
   json["alternatives"] = list(advice.alternatives);
-  json["least_helpful"] = view_json(advice.worst_candidate, rig.rig, basis.scale);
+  json["least_helpful"] = view_json(advice.worst_candidate, reference, basis.scale);
   json["sd_after_more"] = Json::array();
   for (const double sd : advice.sd_after_more) json["sd_after_more"].push_back(basis.scale * sd);
-  session.result(json, advice_text(advice, wanted, basis, rig.rig) + basis_text(basis));
+  session.result(json, advice_text(advice, wanted, basis, reference) + basis_text(basis));
 }
 
 }  // namespace
@@ -224,6 +239,9 @@ void add_advise(CLI::App& app, Session& session) {
                             "suggest the next board poses that reduce a chosen error most",
                             "vernier advise rig.json --reduce depth --at-m 5 --views 3");
   verb->add_option("rig", o->rig, "rig file with a covariance")->required();
+  verb->add_option("--cameras", o->cameras,
+                   "the cameras whose error to reduce and that must see the board, as left,right "
+                   "(default: all; all but projection and parameters need two)");
   verb->add_option("--reduce", o->reduce,
                    "error to reduce: depth, projection, rectification, baseline or a parameter "
                    "such as left.f_px")

@@ -60,17 +60,35 @@ class Plan(Base):
         self.assertEqual(now, self.json('plan', '--target-depth-sigma-m', '0.01', '--at-m', '5',
                                         '--rig', 'nominal'))
 
-    def test_frames_that_one_camera_sees_are_said(self):
+    def test_further_frames_are_seen_by_as_few_cameras(self):
         rows = [row for row in cli_test.board_lines()
                 if not row[0].isdigit() or row.split(',')[1] == '0' or int(row.split(',')[0]) % 2]
         (self.folder / 'o.csv').write_text('\n'.join(rows))
         self.json('calibrate', '--observations', 'o.csv', '--size', '640x480', '--no-model-check', '-o', 'rig.json')
         words = ('--depth-error', '0.02@2m')
-        self.assertIn('6 of 12 frames are not seen by all cameras', self.call('plan', 'rig.json', *words).stderr)
-        self.assertIn('about 2.0 times as many more', self.call('plan', 'rig.json', *words).stderr)
-        self.assertNotIn('not seen by all', self.call('plan', 'nominal', *words).stderr)
+        self.assertIn('(6 of 12 are seen by all cameras)', self.call('plan', 'rig.json', *words).stdout)
+        self.assertNotIn('seen by all', self.call('plan', 'nominal', *words).stdout)
+        # sure enough or not (exit code 3): the numbers are given
+        plan = json.loads(self.call('plan', 'rig.json', '--depth-error', '0.005@2m', '--json').stdout)
+        low, high = plan['views_interval']
+        self.assertTrue(low <= plan['views'] <= high)
+        self.assertEqual((plan['views_so_far'], plan['views_so_far_by_all']), (12, 6))
+        self.assertGreater(plan['views'] - 12, 1.5 * (plan['views_by_all'] - 12))
         self.json('convert', 'rig.json', '--cameras', 'right,left', '-o', 'pair.json')
         self.assertIn('its 12 views are not in this file', self.call('plan', 'pair.json', *words).stderr)
+
+    def test_cameras_are_chosen_by_name(self):
+        both = self.json('plan', 'nominal', '--depth-error', '0.02@5m')['views']
+        chosen = self.json('plan', 'nominal', '--depth-error', '0.02@5m', '--cameras', 'right,left')
+        self.assertIn('for the cameras right,left', chosen['basis'])
+        self.assertAlmostEqual(chosen['views'], both, delta=0.1 * both + 2)
+        self.refused('plan', 'nominal', '--depth-error', '0.02', '--cameras', 'left', about='name two of them')
+        self.refused('plan', 'nominal', '--depth-error', '0.02', '--cameras', 'left,rigth',
+                     about='"rigth" is none of the rig\'s cameras')
+        advised = self.json('advise', 'nominal', '--reduce', 'depth')
+        turned = self.json('advise', 'nominal', '--reduce', 'depth', '--cameras', 'right,left')
+        self.assertAlmostEqual(turned['sd_now'] / advised['sd_now'], 1, delta=0.1)
+        self.refused('advise', 'nominal', '--reduce', 'baseline', '--cameras', 'right', about='name two of them')
 
     def test_more_is_needed_for_less(self):
         views = [self.json('plan', 'nominal', '--projection-error', f'{px}@5m')['views']

@@ -45,7 +45,8 @@ ViewKnowledge counting(int taken, double noise_px = 1, double log_sd = 0) {
   const Rig rig = test::stereo_rig();
   const Eigen::MatrixXd free = Eigen::MatrixXd::Identity(parameter_count(rig), 1);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-  known.pools.push_back({rig, free, std::vector<Eigen::MatrixXd>(std::size_t(taken), one), {one}});
+  known.pools.push_back(
+      {rig, free, std::vector<Eigen::MatrixXd>(std::size_t(taken), one), {{.views = {one}}}, {}});
   known.taken = taken;
   known.noise_px = noise_px;
   known.noise_log_sd = log_sd;
@@ -136,12 +137,26 @@ TEST(ViewsNeeded, BadInputIsNamed) {
             std::string::npos);
 }
 
+TEST(ViewsNeeded, FurtherViewsAreSeenByAsManyCamerasAsThoseSoFar) {
+  // one view in four counts
+  ViewKnowledge known = counting(4);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(1, 1);
+  std::vector<PlannedViews>& following = known.pools[0].following;
+  following[0].share = 0.25;
+  following.push_back({0.75, false, {none}});
+  const ViewsNeeded needed = views_needed(known, counted, 1, 0.1);
+  EXPECT_NEAR(needed.views, 4 + 4 * 96, 12);
+  EXPECT_EQ(views_needed(*with_views_by_all(known), counted, 1, 0.1).views, 100);
+  following.erase(following.begin());
+  EXPECT_FALSE(with_views_by_all(known));
+}
+
 TEST(PosePopulation, ViewsHaveTheSpreadOfThePosesTheyAreLike) {
   const SimulatedBoard many = views(200);
   const PosePopulation population =
       pose_population(many.truth.T_first_board, many.observations.target_m);
-  const auto drawn =
-      population_views(many.truth.rig, many.observations.target_m, {0, 0}, population, 200, 1, 0);
+  const auto drawn = population_views(many.truth.rig, many.observations.target_m, {0, 0},
+                                      population, {0, 1}, 200, 1, 0);
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(drawn[0].rows(), drawn[0].cols()), true_mean = mean;
   for (const auto& S : drawn) mean += S / 200;
   const auto equations = reduced_normal_equations(many.observations, many.truth, 1);

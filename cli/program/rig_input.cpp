@@ -44,6 +44,14 @@ bool has_key(const std::string& text, const std::string& key) {
   return text.rfind(key + ":", 0) == 0 || text.find("\n" + key + ":") != std::string::npos;
 }
 
+/// A JSON file is one of OpenCV's FileStorage, or a rig.json.
+RigFormat json_format(const fs::path& file) {
+  std::error_code fault;
+  const bool opencv = fs::is_regular_file(file, fault) &&
+                      read_whole(file).find("\"opencv-matrix\"") != std::string::npos;
+  return opencv ? RigFormat::opencv : RigFormat::vernier;
+}
+
 /// Distinguishes the YAML formats by their keys.
 RigFormat yaml_format(const fs::path& file) {
   const std::string text = read_whole(file);
@@ -126,7 +134,8 @@ RigFormat named_format(const std::vector<fs::path>& files) {
   const bool folder = fs::is_directory(files[0], fault);
   const bool shipped = folder && !shipped_file("rigs/" + files[0].string() + ".rig.json").empty();
   if (folder && !shipped) return folder_format(files[0]);
-  if (end == ".json" || !fs::is_regular_file(files[0], fault)) return RigFormat::vernier;
+  if (end == ".json") return json_format(files[0]);
+  if (!fs::is_regular_file(files[0], fault)) return RigFormat::vernier;
   const std::string text = read_whole(files[0]);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool json = end != ".cameramodel" && first != std::string::npos && text[first] == '{';
@@ -159,7 +168,8 @@ RigFormat input_format(const fs::path& input) {
   if (end == ".cameramodel") return RigFormat::mrcal;
   if (end == ".yaml" || end == ".yml") return yaml_format(input);
   if (end == ".txt") return text_format(input);
-  if (end == ".json" || end.empty()) return RigFormat::vernier;
+  if (end == ".json") return json_format(input);
+  if (end.empty()) return RigFormat::vernier;
   if (std::error_code fault;
       fs::is_regular_file(input, fault) && looks_like_kitti_calib(read_whole(input))) {
     return RigFormat::kitti;

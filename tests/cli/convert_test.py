@@ -7,6 +7,7 @@
 """
 import json
 import os
+import re
 import sys
 import unittest
 
@@ -284,6 +285,18 @@ class Convert(Case):
                 (['nominal', '--model', 'fisheye9', '-o', out], 'unknown model')):
             with self.subTest(of):
                 self.complains('convert', *words, of=of, leaves=[out])
+
+    def test_json_of_opencv(self):
+        # as cv::FileStorage writes a file named .json
+        self.works('convert', 'nominal', '--to', 'opencv', '-o', self.out('r.yml'))
+        keys = {}
+        for key, rest in re.findall(r'^(\w+): (!!opencv-matrix\n(?: +.*\n)+|.*)', self.out('r.yml').read_text(), re.M):
+            found = dict(re.findall(r'(\w+): (.*)', rest)) if rest.startswith('!!') else None
+            keys[key] = (int(rest) if rest.isdigit() else rest) if found is None else {
+                'type_id': 'opencv-matrix', 'rows': int(found['rows']), 'cols': int(found['cols']),
+                'dt': 'd', 'data': json.loads(found['data'])}
+        self.out('r.json').write_text(json.dumps(keys, indent=4))
+        self.expect_nominal(self.out('r.json'))
 
     def test_opencv_without_sizes(self):
         self.works('convert', 'nominal', '--to', 'opencv', '-o', self.out('r.yml'))

@@ -90,7 +90,7 @@ std::string how_measured(const SequenceArguments& options) {
 
 /// Reports limitations of the results. Returns whether they can be written.
 bool report_limits(const MeasuredSequence& sequence, Session& session) {
-  constexpr double most_loss = 0.7, most_false = 0.7, least_agreeing = 0.7;
+  constexpr double most_loss = 0.7, most_false = 0.7, least_agreeing = 0.7, most_beside = 0.75;
   constexpr int least_clusters = 6;
   if (!sequence.with_depth) {
     session.warn("no depth maps: a line that something hides counts as lost");
@@ -123,6 +123,12 @@ bool report_limits(const MeasuredSequence& sequence, Session& session) {
         fmt::format("{:.0f} % of what other views saw is not where the poses put it: check the "
                     "poses, and the unit of the depths",
                     100 * sequence.all.loss.value));
+  } else if (sequence.all.beside_lines.known() && sequence.all.beside_lines.value > most_beside) {
+    any = false;
+    session.add_trust_warning(
+        fmt::format("{:.0f} % of the segments lie on no line that other views saw: check that the "
+                    "depth maps, the poses and the segments are of the same images",
+                    100 * sequence.all.beside_lines.value));
   }
   return any;
 }

@@ -46,12 +46,14 @@ struct LinesArguments {
   DepthViewOptions how;
 };
 
+constexpr double below_floor_m = 0.5;  ///< more than a floor's unevenness and a height's error
+
 /// What was found in the images.
 struct LinesFigures {
   std::vector<double> lines, sigmas_m;
   std::vector<double> relative_sigmas;  ///< of a line's distance
   std::vector<double> down;             ///< part of the camera's y axis; 1: held level
-  std::size_t segments = 0, placed = 0;
+  std::size_t segments = 0, placed = 0, below_floor = 0;
 };
 
 /// The turn of a camera against a level one, from its pitch and roll.
@@ -76,6 +78,17 @@ struct Stance {
   double height_m = 0;
   Eigen::Matrix3d R_level_camera;
 };
+
+/// The number of placed segments whose middle is more than below_floor_m below the floor.
+std::size_t below_floor(const DepthSegments& segments, const Stance& at) {
+  const auto is_below = [&](const MeasuredSegment& s) {
+    const Eigen::Vector3d middle = 0.5 * (s.segment.a_m + s.segment.b_m);
+    return s.status == SegmentStatus::placed &&
+           at.R_level_camera.row(1).dot(middle) > at.height_m + below_floor_m;
+  };
+  return static_cast<std::size_t>(
+      std::count_if(segments.in_space.begin(), segments.in_space.end(), is_below));
+}
 
 std::vector<Stance> stances(const LinesArguments& options, const std::vector<ImageFiles>& files) {
   std::vector<Stance> all;
@@ -131,6 +144,13 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
   if (const std::string doubt = tilt_doubt(f.down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
+  constexpr double most_below = 0.2;  // of all: a stairwell shows some
+  if (static_cast<double>(f.below_floor) > most_below * static_cast<double>(f.placed)) {
+    session.add_trust_warning(fmt::format(
+        "{} of {} segments lie more than {} m below the floor: check the unit of the depth maps, "
+        "--depth-unit-m, that of the poses, and --height-m",
+        f.below_floor, f.placed, below_floor_m));
+  }
   Json json{{"images", f.lines.size()},
             {"segments", f.segments},
             {"placed", f.placed},
@@ -175,6 +195,7 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
       ++figures.placed;
       figures.relative_sigmas.push_back(s.relative_sigma);
     }
+    figures.below_floor += below_floor(segments, all[i]);
     figures.down.push_back(all[i].R_level_camera(1, 1));
     figures.lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);

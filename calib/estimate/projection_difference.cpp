@@ -19,6 +19,10 @@
 namespace vernier::internal {
 namespace {
 
+/// Of the angle to the axis of a point that the alignment is fitted to, 80 degrees: it must not go
+/// behind its camera on the way.
+constexpr double least_cosine_in_focus = 0.1736;
+
 /// A point as seen by a, homogeneous: w = 0 at infinity, where translations have no effect.
 struct SeenPoint {
   int camera = 0;
@@ -71,6 +75,7 @@ std::vector<SeenPoint> points_of(const Rig& a,
             (pixels[i] - middle).norm() <= options.focus_share * middle.norm() * (1 + 1e-12);
         const auto ray = try_unproject(a.cameras[c], pixels[i]);
         if (ray) {
+          p.in_focus = p.in_focus && ray->normalized().z() > least_cosine_in_focus;
           p.x_camera = ray->normalized() * (far ? 1 : distance);
           p.x_first = move(T_first_camera, p.x_camera, p.w);
         }
@@ -86,12 +91,16 @@ std::vector<SeenPoint> points_of(const Rig& a,
   return points;
 }
 
+Eigen::Vector3d in_camera(const Rig& b, const Pose& T_b_a, const SeenPoint& p) {
+  return move(b.T_camera_first[p.camera], move(T_b_a, p.x_first, p.w), p.w);
+}
+
 /// e over all points; empty if one of them is behind its camera.
 Eigen::VectorXd misses(const Rig& b, const Pose& T_b_a, const std::vector<SeenPoint>& points) {
   Eigen::VectorXd e(2 * static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SeenPoint& p = points[i];
-    const Eigen::Vector3d x = move(b.T_camera_first[p.camera], move(T_b_a, p.x_first, p.w), p.w);
+    const Eigen::Vector3d x = in_camera(b, T_b_a, p);
     if (!(x.z() > 0)) return {};
     e.segment<2>(2 * static_cast<Eigen::Index>(i)) = project(b.cameras[p.camera], x) - p.pixel;
   }
@@ -215,10 +224,6 @@ void write_differences(const Rig& b,
                        ProjectionDifference& result) {
   const Eigen::VectorXd before = misses(b, Pose{}, points);
   const Eigen::VectorXd after = misses(b, result.T_b_a, points);
-  if (after.size() == 0) {
-    throw Error("projection difference", "the alignment takes points behind a camera",
-                "check that the rigs face the same way");
-  }
   std::vector<Eigen::Vector2d> all_focus;
   std::vector<std::vector<Eigen::Vector2d>> focus(result.maps.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -300,7 +305,7 @@ ProjectionDifference projection_difference(const Rig& a,
   check_same_cameras(a, b, "second rig");
   check(options);
   ProjectionDifference result;
-  const std::vector<SeenPoint> points = points_of(a, b, options, result);
+  std::vector<SeenPoint> points = points_of(a, b, options, result);
   const std::vector<SeenPoint> focus = focus_of(points);
   if (focus.size() < 6) {
     throw Error("projection difference",
@@ -309,6 +314,9 @@ ProjectionDifference projection_difference(const Rig& a,
   }
   const double nearest_m = nearest(options);
   result.T_b_a = align(b, focus, nearest_m);
+  // points outside the focus, as those of a fisheye near 90 degrees
+  result.left_out += static_cast<int>(std::erase_if(
+      points, [&](const SeenPoint& p) { return !(in_camera(b, result.T_b_a, p).z() > 0); }));
   write_differences(b, points, result);
   if (covariance_a && covariance_b) {
     const Eigen::MatrixXd G = by_alignment(b, result.T_b_a, points);

@@ -16,7 +16,8 @@ struct ProjectionDifferenceOptions {
   std::vector<double> distances_m{1, 3, 10, std::numeric_limits<double>::infinity()};
   Eigen::Vector2i grid{20, 15};  ///< columns and rows of pixels over each image
   /// The alignment is fitted to the focus: pixels within this fraction of half the image's diagonal
-  /// from its centre. Image corners are poorly calibrated and would distort the fit.
+  /// from its centre, and 80 degrees of the axis. Image corners are poorly calibrated and would
+  /// distort the fit.
   double focus_share = 0.7;
 };
 

@@ -12,6 +12,7 @@
 #include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
+#include "tests/support/wide_views.h"
 
 namespace vernier {
 
@@ -102,6 +103,18 @@ TEST(ProjectionDifference, LeavesOutPixelsWithoutARay) {
   EXPECT_GT(d.left_out, 0);
   EXPECT_TRUE(std::isnan(d.maps[0].after_px[0].x()));
   EXPECT_TRUE(std::isfinite(d.after.max_px));
+}
+
+// The alignment turns by 8 px of 300 a radian, and takes rays of the edge behind the camera.
+TEST(ProjectionDifference, LeavesOutWhatTheAlignmentTakesBehindAFisheye) {
+  const Rig a = test::wide_rig();
+  Rig b = a;
+  for (Camera& camera : b.cameras) camera.parameters[2] += 8;
+  const ProjectionDifference d = projection_difference(a, b, {.grid = {81, 61}});
+  EXPECT_NEAR(vector_from_rotation(d.T_b_a.R).y(), -8.0 / 300, 0.2 * 8 / 300);
+  EXPECT_GT(d.left_out, projection_difference(a, a, {.grid = {81, 61}}).left_out);
+  EXPECT_TRUE(std::isfinite(d.after.max_px));
+  EXPECT_LT(d.in_focus.rms_px, 2);
 }
 
 TEST(ProjectionDifference, RefusesBadOptions) {

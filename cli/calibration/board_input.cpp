@@ -35,11 +35,8 @@ std::vector<Eigen::Vector2i> size_of(const BoardInput& input) {
     throw Error(input.verb, "image size missing", "give --size, for example 640x480");
   }
   std::vector<Eigen::Vector2i> sizes;
-  for (std::size_t at = 0; at <= input.size.size();) {
-    const std::size_t end = std::min(input.size.find(',', at), input.size.size());
-    const auto [width, height] = parse_size(input.size.substr(at, end - at), "--size");
+  for (const auto& [width, height] : parse_sizes(input.size, "--size")) {
     sizes.emplace_back(width, height);
-    at = end + 1;
   }
   return sizes;
 }

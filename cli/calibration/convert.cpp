@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -40,11 +41,21 @@ ImportOptions import_options(const ConvertArguments& options) {
   import.unit_m = options.unit_m;
   if (!options.model.empty()) import.model = camera_model(options.model);
   if (!options.size.empty()) {
-    const auto [width, height] = parse_size(options.size, "--size");
-    import.size_px = Eigen::Vector2i(width, height);
+    const auto sizes = parse_sizes(options.size, "--size");
+    const auto size_of = [](const std::pair<int, int>& s) {
+      return Eigen::Vector2i(s.first, s.second);
+    };
+    if (sizes.size() == 1) {
+      import.size_px = size_of(sizes[0]);
+    } else {
+      import.size_of_images = [ =, text = options.size ](std::size_t camera) {
+        if (camera < sizes.size()) return size_of(sizes[camera]);
+      throw Error("--size " + text, "the rig has more cameras", "give one size, or one of each");
+    };
   }
-  return import;
 }
+return import;
+}  // namespace
 
 /// Keeps the cameras of a list such as "P2,P3", in its order, with their part of the covariance.
 /// The evidence, which is of all cameras, goes.
@@ -58,6 +69,25 @@ void keep_cameras(ReadRig& read, const std::string& list) {
     read.notes.emplace_back(
         "the views and corners are of all cameras and are dropped; the covariance of the kept "
         "cameras and the figures of the whole calibration stay");
+  }
+}
+
+/// Throws Error unless sizes of several cameras are those of all.
+void check_sizes(const Rig& rig, const std::string& list) {
+  if (list.find(',') == std::string::npos) return;
+  const auto sizes = parse_sizes(list, "--size");
+  const auto count = static_cast<std::int64_t>(rig.cameras.size());
+  if (sizes.size() != rig.cameras.size()) {
+    throw Error("--size " + list, "the rig has " + counted(count, "camera"),
+                "give one size, or one of each camera");
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Camera& camera = rig.cameras[i];
+    if (camera.size_px == Eigen::Vector2i(sizes[i].first, sizes[i].second)) continue;
+    throw Error("--size " + list,
+                fmt::format("camera \"{}\" is of {}x{} px by the file", camera.name,
+                            camera.size_px[0], camera.size_px[1]),
+                "leave it out");
   }
 }
 
@@ -117,6 +147,16 @@ void report_notes(const ReadRig& read,
   for (const std::string& note : read.notes) session.info(note);
   warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);
+  constexpr double far_off = 0.3;  // of a side, from the middle; lenses differ by a few percent
+  for (const Camera& camera : read.estimate.rig.cameras) {
+    const Eigen::Array2d size = camera.size_px.cast<double>();
+    const Eigen::Array2d off = Eigen::Array2d(camera.ox_px(), camera.oy_px()) - 0.5 * (size - 1);
+    if ((off.abs() <= far_off * size).all()) continue;
+    session.warn(fmt::format(
+        "camera \"{}\": its principal point ({:.0f}, {:.0f}) is far from the middle of {}x{} px; "
+        "check the size of its images (--size 640x480,1280x960 gives one of each camera)",
+        camera.name, camera.ox_px(), camera.oy_px(), camera.size_px[0], camera.size_px[1]));
+  }
 }
 
 void run(const ConvertArguments& options, Session& session) {
@@ -127,6 +167,7 @@ void run(const ConvertArguments& options, Session& session) {
       options.to.empty() ? output_format(options.output) : written_format(options.to);
   check_options(options, from);
   ReadRig read = read_rig_as(from, inputs, import_options(options));
+  check_sizes(read.estimate.rig, options.size);
   keep_cameras(read, options.cameras);
   rename(read.estimate, options.names);
   const Rig& rig = read.estimate.rig;
@@ -161,7 +202,7 @@ void run(const ConvertArguments& options, Session& session) {
                      text);
 }
 
-}  // namespace
+}  // namespace vernier::cli
 
 void add_convert(CLI::App& app, Session& session) {
   auto o = std::make_shared<ConvertArguments>();
@@ -191,8 +232,10 @@ void add_convert(CLI::App& app, Session& session) {
   verb->add_option("--cameras", o->cameras,
                    "cameras to keep, in this order, such as P2,P3, with their covariance");
   verb->add_option("--names", o->names, "camera names, such as left,right");
-  verb->add_option("--size", o->size,
-                   "image size, such as 640x480, if missing in an OpenCV or KITTI file");
+  verb->add_option(
+      "--size", o->size,
+      "image size, such as 640x480, if missing in an OpenCV or KITTI file; of an OpenCV "
+      "file also one of each camera, separated by commas");
   verb->add_option("--unit-m", o->unit_m, "unit of length of the input, in metres (0.001: mm)")
       ->check(finite_and_positive)
       ->capture_default_str();

@@ -146,6 +146,16 @@ std::pair<int, int> parse_size(const std::string& text, const std::string& optio
   return {a, b};
 }
 
+std::vector<std::pair<int, int>> parse_sizes(const std::string& text, const std::string& option) {
+  std::vector<std::pair<int, int>> sizes;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    sizes.push_back(parse_size(text.substr(at, end - at), option));
+    at = end + 1;
+  }
+  return sizes;
+}
+
 std::pair<int, int> parse_grid(const std::string& text, const std::string& option) {
   constexpr int most = 1000;
   const std::pair<int, int> size = parse_size(text, option);

@@ -87,6 +87,9 @@ CLI::App* add_verb(CLI::App& app,
 /// Parses "9x6" as two positive integers. Throws Error naming the option.
 std::pair<int, int> parse_size(const std::string& text, const std::string& option);
 
+/// "640x480,1280x960": one or several of them.
+std::vector<std::pair<int, int>> parse_sizes(const std::string& text, const std::string& option);
+
 /// The same for a grid or a board: neither side above 1000.
 std::pair<int, int> parse_grid(const std::string& text, const std::string& option);
 

@@ -306,6 +306,10 @@ class Convert(Case):
                        of='the file does not give the image size')
         self.works('convert', self.out('r.yml'), '--size', '640x480', '-o', self.out('back.json'))
         self.assertEqual(self.rig()['cameras'][0]['size_px'], [640, 480])
+        done = self.works('convert', self.out('r.yml'), '--size', '640x480,1280x960', '-o', self.out('back.json'))
+        self.assertEqual([c['size_px'] for c in self.rig()['cameras']], [[640, 480], [1280, 960]])
+        self.assertIn('camera "right": its principal point', done.stderr)
+        self.assertNotIn('camera "left": its principal point', done.stderr)
 
 
 if __name__ == '__main__':

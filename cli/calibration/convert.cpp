@@ -147,7 +147,7 @@ void report_notes(const ReadRig& read,
   for (const std::string& note : read.notes) session.info(note);
   warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);
-  constexpr double far_off = 0.3;  // of a side, from the middle; lenses differ by a few percent
+  constexpr double far_off = 0.2;  // of a side, from the middle; lenses differ by a few percent
   for (const Camera& camera : read.estimate.rig.cameras) {
     const Eigen::Array2d size = camera.size_px.cast<double>();
     const Eigen::Array2d off = Eigen::Array2d(camera.ox_px(), camera.oy_px()) - 0.5 * (size - 1);

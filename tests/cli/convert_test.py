@@ -153,11 +153,12 @@ class Convert(Case):
         board = ('--board', '9x6', '--square-m', '0.03', '--pixel-sigma', '0.2')
         advice = ('advise', three, '--reduce', 'depth', *board)
         remedy = '--cameras a,b -o pair.json'
-        self.complains(*advice, of=f'vernier convert RIG {remedy}')
+        self.complains(*advice, of='name two of them, as in --cameras a,b')
+        self.works(*advice, '--cameras', 'a,b')
         image = ROOT / 'datasets/none.png'
         self.complains('rectify', '--rig', three, '--left', image, '--right', image, '-o',
                        f'{self.out("r")}/', of=remedy)
-        self.complains('plan', three, '--depth-error', '0.05', of=remedy)
+        self.complains('plan', three, '--depth-error', '0.05', of='name two of them, as in --cameras a,b')
         self.works('convert', three, '--cameras', 'b,c', '-o', pair)
         self.works('advise', pair, *advice[2:])
         self.assertEqual(len(self.rig('pair.json')['covariance']['matrix']),

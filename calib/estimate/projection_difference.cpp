@@ -115,9 +115,8 @@ Eigen::MatrixXd by_alignment(const Rig& b,
   ProjectionJacobian J;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SeenPoint& p = points[i];
-    const Pose& T_camera_first = b.T_camera_first[p.camera];
-    project(b.cameras[p.camera], move(T_camera_first, move(T_b_a, p.x_first, p.w), p.w), J);
-    const Eigen::Matrix<double, 2, 3> by_x = J.point * T_camera_first.R;
+    project(b.cameras[p.camera], in_camera(b, T_b_a, p), J);
+    const Eigen::Matrix<double, 2, 3> by_x = J.point * b.T_camera_first[p.camera].R;
     const auto row = 2 * static_cast<Eigen::Index>(i);
     G.block<2, 3>(row, 0) = -by_x * hat(T_b_a.R * p.x_first);
     G.block<2, 3>(row, 3) = p.w * by_x;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/board_observations.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 
@@ -45,14 +46,9 @@ std::vector<double> drawn_shares(const std::vector<FrameKind>& kinds,
                         .feature = static_cast<std::uint32_t>(k),
                         .source = static_cast<std::uint32_t>(DrawSource::planned_views),
                         .eye = 3});
-    // a gamma variable of n frames: half a chi-squared one of 2 n degrees of freedom
-    double gamma = 0;
-    for (std::size_t i = 0; i < 2 * kinds[k].frames.size(); ++i) {
-      const double normal = draws.normal();
-      gamma += 0.5 * normal * normal;
-    }
-    shares.push_back(gamma);
-    sum += gamma;
+    // a gamma variable of n frames is half a chi-squared one of 2 n degrees of freedom
+    shares.push_back(draw_chi_squared(draws, 2.0 * static_cast<double>(kinds[k].frames.size())));
+    sum += shares.back();
   }
   for (double& share : shares) share /= sum;
   return shares;

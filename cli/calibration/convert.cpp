@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -42,20 +43,18 @@ ImportOptions import_options(const ConvertArguments& options) {
   if (!options.model.empty()) import.model = camera_model(options.model);
   if (!options.size.empty()) {
     const auto sizes = parse_sizes(options.size, "--size");
-    const auto size_of = [](const std::pair<int, int>& s) {
-      return Eigen::Vector2i(s.first, s.second);
+    const auto size_of = [sizes](std::size_t camera) {
+      const auto& [width, height] = sizes[std::min(camera, sizes.size() - 1)];
+      return Eigen::Vector2i(width, height);
     };
     if (sizes.size() == 1) {
-      import.size_px = size_of(sizes[0]);
+      import.size_px = size_of(0);
     } else {
-      import.size_of_images = [ =, text = options.size ](std::size_t camera) {
-        if (camera < sizes.size()) return size_of(sizes[camera]);
-      throw Error("--size " + text, "the rig has more cameras", "give one size, or one of each");
-    };
+      import.size_of_images = size_of;  // check_sizes counts them
+    }
   }
+  return import;
 }
-return import;
-}  // namespace
 
 /// Keeps the cameras of a list such as "P2,P3", in its order, with their part of the covariance.
 /// The evidence, which is of all cameras, goes.
@@ -140,15 +139,10 @@ void write_all(const NamedContents& files, const std::filesystem::path& output) 
   outputs.commit();
 }
 
-void report_notes(const ReadRig& read,
-                  RigFormat from,
-                  const std::vector<std::string>& losses,
-                  const Session& session) {
-  for (const std::string& note : read.notes) session.info(note);
-  warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
-  for (const std::string& line : losses) session.info(line);
+/// Warns of cameras whose size is probably another's.
+void warn_of_far_centres(const Rig& rig, const Session& session) {
   constexpr double far_off = 0.2;  // of a side, from the middle; lenses differ by a few percent
-  for (const Camera& camera : read.estimate.rig.cameras) {
+  for (const Camera& camera : rig.cameras) {
     const Eigen::Array2d size = camera.size_px.cast<double>();
     const Eigen::Array2d off = Eigen::Array2d(camera.ox_px(), camera.oy_px()) - 0.5 * (size - 1);
     if ((off.abs() <= far_off * size).all()) continue;
@@ -157,6 +151,16 @@ void report_notes(const ReadRig& read,
         "check the size of its images (--size 640x480,1280x960 gives one of each camera)",
         camera.name, camera.ox_px(), camera.oy_px(), camera.size_px[0], camera.size_px[1]));
   }
+}
+
+void report_notes(const ReadRig& read,
+                  RigFormat from,
+                  const std::vector<std::string>& losses,
+                  const Session& session) {
+  for (const std::string& note : read.notes) session.info(note);
+  warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
+  for (const std::string& line : losses) session.info(line);
+  warn_of_far_centres(read.estimate.rig, session);
 }
 
 void run(const ConvertArguments& options, Session& session) {
@@ -202,7 +206,7 @@ void run(const ConvertArguments& options, Session& session) {
                      text);
 }
 
-}  // namespace vernier::cli
+}  // namespace
 
 void add_convert(CLI::App& app, Session& session) {
   auto o = std::make_shared<ConvertArguments>();

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <sstream>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
@@ -26,6 +25,7 @@
 #include "calib/formats/ros_camera_info.h"
 #include "calib/rig.h"
 #include "calib/rig_file.h"
+#include "cli/program/chosen_cameras.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "stereo/grey_levels.h"
@@ -118,8 +118,7 @@ std::vector<fs::path> named_files(const std::string& name) {
   std::error_code fault;
   if (name.find(',') == std::string::npos || fs::exists(name, fault)) return {name};
   std::vector<fs::path> files;
-  std::istringstream in(name);
-  for (std::string file; std::getline(in, file, ',');) files.emplace_back(file);
+  for (const std::string& file : listed(name)) files.emplace_back(file);
   for (const fs::path& file : files) {
     if (file.empty()) throw Error("--rig " + name, "names an empty file", "give FILE,FILE");
   }

@@ -20,8 +20,8 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
   session.warn(fmt::format(
       "{}: its {} views are not in this file, as after convert: they do not count, and board, "
       "distance and noise are those of a datasheet; to count them plan from the file that has "
-      "them, "
-      "of all cameras, with --cameras, or say how the board is seen with --board, --square-m, "
+      "them, of all cameras, with --cameras, or say how the board is seen with --board, "
+      "--square-m, "
       "--board-distance-m and --pixel-sigma",
       name, rig.calibration->views));
 }

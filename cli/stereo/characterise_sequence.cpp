@@ -111,24 +111,28 @@ bool report_limits(const MeasuredSequence& sequence, Session& session) {
     session.add_trust_warning(
         "nothing could be measured: fewer than 30 lines were seen by enough views; check that the "
         "poses are camera to world and belong to the images");
-  } else if (sequence.all.not_confirmed.known() && sequence.all.not_confirmed.value > most_false) {
-    any = false;
-    session.add_trust_warning(fmt::format(
-        "{:.0f} % of the segments are where the poses put them in no neighbouring view: "
-        "check the poses, and the unit of the depths",
-        100 * sequence.all.not_confirmed.value));
-  } else if (sequence.all.loss.known() && sequence.all.loss.value > most_loss) {
-    any = false;
-    session.add_trust_warning(
-        fmt::format("{:.0f} % of what other views saw is not where the poses put it: check the "
-                    "poses, and the unit of the depths",
-                    100 * sequence.all.loss.value));
-  } else if (sequence.all.beside_lines.known() && sequence.all.beside_lines.value > most_beside) {
-    any = false;
-    session.add_trust_warning(
-        fmt::format("{:.0f} % of the segments lie on no line that other views saw: check that the "
-                    "depth maps, the poses and the segments are of the same images",
-                    100 * sequence.all.beside_lines.value));
+  } else {
+    struct Doubt {
+      const MeasuredValue& share;
+      double most;
+      const char* told;
+    };
+    const SequenceFigures& all = sequence.all;
+    for (const Doubt& doubt :
+         {Doubt{all.not_confirmed, most_false,
+                "of the segments are where the poses put them in no neighbouring view: check the "
+                "poses, and the unit of the depths"},
+          Doubt{all.loss, most_loss,
+                "of what other views saw is not where the poses put it: check the poses, and the "
+                "unit of the depths"},
+          Doubt{all.beside_lines, most_beside,
+                "of the segments lie on no line that other views saw: check that the depth maps, "
+                "the poses and the segments are of the same images"}}) {
+      if (!doubt.share.known() || doubt.share.value <= doubt.most) continue;
+      any = false;
+      session.add_trust_warning(fmt::format("{:.0f} % {}", 100 * doubt.share.value, doubt.told));
+      break;
+    }
   }
   return any;
 }

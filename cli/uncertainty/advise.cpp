@@ -49,8 +49,9 @@ struct Basis {
   double bound_ratio = 1;  ///< honest sd of the target error divided by the bound's
 };
 
-TargetQuantity wanted_of(const AdviseArguments& options, const Rig& rig) {
-  const std::vector<int> cameras = chosen_cameras(rig, options.cameras);
+TargetQuantity wanted_of(const AdviseArguments& options,
+                         const Rig& rig,
+                         const std::vector<int>& cameras) {
   const std::string& what = options.reduce;
   if (what == "depth" || what == "rectification" || what == "baseline") {
     require_chosen_pair(rig, options.cameras, what);
@@ -191,13 +192,14 @@ void run(const AdviseArguments& options, Session& session) {
                  ": advice is for the calibration without the board's shape and motion, "
                  "from the same corners");
   }
+  const std::vector<int> chosen =
+      with_errors_of(options.rig, [&] { return chosen_cameras(rig.rig, options.cameras); });
   const TargetQuantity wanted =
-      with_errors_of(options.rig, [&] { return wanted_of(options, rig.rig); });
+      with_errors_of(options.rig, [&] { return wanted_of(options, rig.rig, chosen); });
   const Basis basis = with_errors_of(options.rig, [&] { return find_basis(options, rig, wanted); });
   std::vector<Eigen::Vector3d> target_m;
   Eigen::Vector2d warp_m(0, 0);
   const std::string board = find_target(options, rig, target_m, warp_m);
-  const std::vector<int> chosen = chosen_cameras(rig.rig, options.cameras);
   const std::vector<int> must_see = options.cameras.empty() ? std::vector<int>{} : chosen;
   const Camera& reference = rig.rig.cameras[static_cast<std::size_t>(chosen[0])];
   std::vector<CandidateView> candidates;

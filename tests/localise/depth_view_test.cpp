@@ -95,6 +95,11 @@ TEST(DepthView, AStepsEdgeIsThatOfTheNearerSurface) {
   }
 }
 
+/// Where the camera sees a point.
+Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) {
+  return {cx + 1.01 * f_px * p.x() / p.z(), cy + f_px * p.y() / p.z()};
+}
+
 /// Depth of the plane n^T X = 1 at a pixel.
 double plane_depth(const Eigen::Vector3d& n, const Eigen::Vector2d& px) {
   return 1 / n.dot(Eigen::Vector3d((px.x() - cx) / (1.01 * f_px), (px.y() - cy) / f_px, 1));
@@ -131,8 +136,7 @@ TEST(DepthView, AFoldLiesWhereItsSurfacesMeet) {
       const DepthImage depth = depth_of([&](int x, int y) { return fold.depth({x, y}); });
       const MeasuredSegment s = longest(depth_segments(pinhole(), edge_image(angle), depth));
       for (const Eigen::Vector3d& end : {s.segment.a_m, s.segment.b_m}) {
-        const Eigen::Vector2d px(cx + 1.01 * f_px * end.x() / end.z(),
-                                 cy + f_px * end.y() / end.z());
+        const Eigen::Vector2d px = pixel_of(end);
         EXPECT_NEAR(end.z(), plane_depth(fold.dark, px), 5e-3) << angle << " " << dark;
         EXPECT_NEAR(end.z(), plane_depth(fold.bright, px), 5e-3) << angle << " " << dark;
       }
@@ -153,8 +157,7 @@ TEST(DepthView, ASlantedSurfaceEndsAtItsEdge) {
       });
       const MeasuredSegment s = longest(depth_segments(pinhole(), edge_image(1.2), depth));
       for (const Eigen::Vector3d& end : {s.segment.a_m, s.segment.b_m}) {
-        const Eigen::Vector2d px(cx + 1.01 * f_px * end.x() / end.z(),
-                                 cy + f_px * end.y() / end.z());
+        const Eigen::Vector2d px = pixel_of(end);
         EXPECT_NEAR(end.z(), table(px), 5e-3) << lean << " " << mixed_px;
       }
     }
@@ -252,7 +255,7 @@ double nees_of_depths(const Fold& fold, double angle, bool is_step) {
     Eigen::Matrix2d C;
     for (int i = 0; i < 2; ++i) {
       const Eigen::Vector3d& p = i == 0 ? s.segment.a_m : s.segment.b_m;
-      const Eigen::Vector2d px(cx + 1.01 * f_px * p.x() / p.z(), cy + f_px * p.y() / p.z());
+      const Eigen::Vector2d px = pixel_of(p);
       off[i] = p.z() - plane_depth(fold.bright, px);
       for (int j = 0; j < 2; ++j) C(i, j) = s.independent_m2(2 + 3 * i, 2 + 3 * j);
     }

@@ -90,13 +90,29 @@ class BuildCost(InFolder):
             f"{seconds}\t{outcome}\t{unit}\t{source}\n"
             for seconds, outcome, unit, source in costs), encoding="utf-8")
         (build / "compile_commands.json").write_text(json.dumps(
-            [{"command": f"c++ -o {unit} -c x"} for unit in units]), encoding="utf-8")
+            [{"command": f"c++ -isystem /usr/include/eigen3 -o {unit} -c x.cpp"} for unit in units]),
+            encoding="utf-8")
         return build
 
-    def check(self, costs, exceptions="", units=("rig.o", "pose.o"), **options):
-        """The exit code of the check and what it printed; calib/camera/rig.cpp is one unit of two."""
+    def check(self, costs, exceptions="", units=("rig.o", "pose.o"), reference=None, again=None,
+              **options):
+        """The exit code of the check and what it printed; calib/camera/rig.cpp is one unit of two.
+
+        `reference` is what the reference unit costs here, and `again` what the units cost when they
+        are compiled again: as before, unless given.
+        """
         build = self.write(costs, units)
         check = load_check()
+        now = {unit: seconds for seconds, outcome, unit, _ in costs if outcome == "compiled"}
+        now.update(again or {})
+
+        def compile_s(command):
+            words = command[0]
+            if words[-1] == check.REFERENCE:
+                return reference or check.REFERENCE_S
+            return now[words[words.index("-o") + 1]]
+
+        check.compile_s = compile_s
         check.EXCEPTIONS = self.folder / "exceptions.txt"
         check.EXCEPTIONS.write_text(exceptions, encoding="utf-8")
         printed = io.StringIO()
@@ -123,6 +139,33 @@ class BuildCost(InFolder):
         self.assertIn("compilation too slow: calib/camera/rig.cpp", said)
         self.assertNotIn("slow: calib/pose.cpp", said)
         self.assertIn("2 of 2 units measured", said)
+
+    def test_a_slow_machine_makes_no_unit_dear_and_a_fast_one_hides_none(self):
+        pose = (3, "compiled", "pose.o", self.POSE)
+        at_limit = [(23.9, "compiled", "rig.o", self.RIG), pose]
+        self.assertEqual(self.check(at_limit)[0], 1)
+        code, said = self.check(at_limit, reference=12)
+        self.assertEqual(code, 0, said)
+        self.assertIn("one second of the limits is 2.00 CPU s here", said)
+        self.assertEqual(self.check([(6.1, "compiled", "rig.o", self.RIG), pose], reference=3)[0], 1)
+
+    def test_a_unit_is_dear_twice_or_not_at_all(self):
+        costs = [(15, "compiled", "rig.o", self.RIG), (1, "compiled", "pose.o", self.POSE)]
+        for again, wanted in ((11.9, 0), (12.1, 1), (30, 1)):
+            code, said = self.check(costs, again={"rig.o": again})
+            self.assertEqual(code, wanted, said)
+        self.assertIn("calib/camera/rig.cpp: 15.0 s", said)
+
+    def test_a_unit_is_compiled_again_beside_the_build(self):
+        check = load_check()
+        source = self.folder / "x.cpp"
+        source.write_text("int x;\n", encoding="utf-8")
+        command = (["c++", "-MD", "-MF", "x.d", "-o", "x.o", "-c", "x.cpp"], str(self.folder))
+        self.assertGreater(check.compile_s(command), 0)
+        self.assertEqual(list(self.folder.iterdir()), [source])
+        source.write_text("int x\n", encoding="utf-8")
+        with self.assertRaisesRegex(check.Unusable, "x.cpp does not compile: .*expected"):
+            check.compile_s(command)
 
     def test_the_last_compilation_in_earnest_counts(self):
         code, said = self.check([(30, "compiled", "rig.o", self.RIG),
@@ -173,16 +216,16 @@ class BuildCost(InFolder):
 
     def test_the_command_line(self):
         # An object of no source of the checkout: the exceptions of the checkout say nothing of it.
-        build = self.write([(17, "compiled", "rig.o", "/far/rig.cpp"),
+        build = self.write([(0.01, "compiled", "rig.o", "/far/rig.cpp"),
                             (0.01, "cached", "pose.o", "/far/pose.cpp")])
-        self.assertEqual(self.command(build)[0], 1)
-        code, said = self.command(build, "--tolerance", "50")
-        self.assertEqual(code, 2)
-        self.assertIn("check_build_cost.py: too few units were measured", said)
         code, said = self.command("--allow-cached", "--tolerance", "50", build, "--top", "1")
         self.assertEqual(code, 0, said)
-        self.assertIn("17.00 s  /far/rig.cpp  (rig.o)", said)
+        self.assertRegex(said, r"0\.0\d s  /far/rig.cpp  \(rig.o\)")
         self.assertIn("not measured: 1 units came from the compiler cache", said)
+        empty = self.write([])
+        code, said = self.command(empty, "--tolerance", "50")
+        self.assertEqual(code, 2)
+        self.assertIn("check_build_cost.py: too few units were measured", said)
         self.assertEqual(self.command("--help")[0], 0)
         for bad in (["--top"], ["--tolerance", "x"], ["--other"], ["a", "b"]):
             self.assertEqual(self.command(*bad)[0], 2, bad)

@@ -13,6 +13,18 @@
 namespace vernier::internal {
 namespace {
 
+/// V diag(values) Vᵀ
+Eigen::MatrixXd with_eigenvalues(const Eigen::MatrixXd& V, const Eigen::VectorXd& values) {
+  const Eigen::MatrixXd scaled = V * values.asDiagonal();
+  return scaled * V.transpose();
+}
+
+/// Aᵀ M A
+Eigen::MatrixXd congruent(const Eigen::MatrixXd& M, const Eigen::MatrixXd& A) {
+  const Eigen::MatrixXd MA = M * A;
+  return A.transpose() * MA;
+}
+
 /// The part of a view in the estimate, corrected for its leverage.
 struct Pull {
   Eigen::VectorXd u;        ///< (I − H)^(-1/2) x
@@ -32,7 +44,7 @@ Pull corrected_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) 
   if (h.maxCoeff() > most) {
     // E u uᵀ = V h (1 − h) / (1 − limited) Vᵀ, and should be V h Vᵀ
     const Eigen::ArrayXd lost = h - h * (1 - h) / (1 - limited);
-    pull.missing = V * lost.matrix().asDiagonal() * V.transpose();
+    pull.missing = with_eigenvalues(V, lost);
   }
   return pull;
 }
@@ -46,7 +58,9 @@ double ledoit_wolf_intensity(const Eigen::MatrixXd& pulls,
   if (!(spread > 0)) return 1;
   double scatter = 0;
   for (Eigen::Index f = 0; f < pulls.cols(); ++f) {
-    scatter += (n * pulls.col(f) * pulls.col(f).transpose() - J).squaredNorm();
+    const Eigen::VectorXd u = pulls.col(f);
+    const Eigen::MatrixXd of_one = n * u * u.transpose();
+    scatter += (of_one - J).squaredNorm();
   }
   return std::min(1.0, scatter / (n * n) / spread);
 }
@@ -62,6 +76,12 @@ double oracle_approximating_intensity(const Eigen::MatrixXd& J,
   const double spread = (n + 1 - 2 / p) * (J - target).squaredNorm();
   if (!(spread > 0)) return 1;
   return std::min(1.0, ((1 - 2 / p) * J.squaredNorm() + J.trace() * J.trace()) / spread);
+}
+
+/// The nearest symmetric matrix whose eigenvalues are at least 1.
+Eigen::MatrixXd at_least_identity(const Eigen::MatrixXd& M) {
+  const SymmetricEigen eigen(0.5 * (M + M.transpose()));
+  return with_eigenvalues(eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(1.0));
 }
 
 /// A covariance whose scale is the mean square of few pulls is too small by the variance of
@@ -85,14 +105,14 @@ Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
   const Eigen::MatrixXd L = Cholesky(bound).lower();
   Eigen::MatrixXd pulls(p, frames), missing = Eigen::MatrixXd::Zero(p, p);
   for (Eigen::Index f = 0; f < frames; ++f) {
-    const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
+    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
     const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
     pulls.col(f) = pull.u;
     if (pull.missing.size() > 0) missing += pull.missing;
   }
   Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
   if (equations.prior_information.size() > 0) {
-    prior_share = L.transpose() * equations.prior_information * L;
+    prior_share = congruent(equations.prior_information, L);
     pulls.colwise() -= pulls.rowwise().mean().eval();  // their sum is the prior's pull, no scatter
   }
   const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
@@ -111,7 +131,7 @@ Eigen::MatrixXd small_sample_covariance(const ReducedNormalEquations& equations,
                  oracle_approximating_intensity(J, target, dimensions, frames - 1));
     shrunk = student_variance(frames) * ((1 - alpha) * J + alpha * target);
   }
-  const Eigen::MatrixXd matrix = L * (shrunk + prior_share) * L.transpose();
+  const Eigen::MatrixXd matrix = congruent(at_least_identity(shrunk + prior_share), L.transpose());
   return 0.5 * (matrix + matrix.transpose());
 }
 

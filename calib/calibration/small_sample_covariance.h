@@ -33,6 +33,10 @@ enum class BoundOf { white_noise, random_effects };
 /// shrinkage target uses I − G instead of I and p − tr G instead of p, and G is added. Needs at
 /// least three frames (else Error).
 ///
+/// The scatter of few views may by chance be less than the bound, which no noise undercuts: in the
+/// directions in which the covariance is below C it is set to C (eigenvalues of L⁻¹ P L⁻ᵀ of at
+/// least 1).
+///
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of a few frames, is far from it in most directions: then α = 1 and tr J / p
 /// is taken as 1 where it is less.

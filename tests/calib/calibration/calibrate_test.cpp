@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/base/decompositions.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
@@ -74,10 +75,26 @@ TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
   const Eigen::ArrayXd ratio =
       estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array();
-  EXPECT_GT(ratio.minCoeff(), 0.6);  // white noise
+  EXPECT_GT(ratio.minCoeff(), 1 - 1e-9);  // white noise
   EXPECT_LT(ratio.maxCoeff(), 1.7);
   EXPECT_EQ(calibrate(board.observations, {.white_noise = true}).covariance->kind,
             CovarianceKind::mvb);
+}
+
+TEST(Calibrate, TheCovarianceOfFewFramesIsNowhereBelowTheBound) {
+  for (const int frames : {3, 5, 8}) {
+    for (const bool known : {false, true}) {
+      CalibrationOptions options;
+      if (known) options.known = {{"left.f_px", 510, 5}, {"right.k1", 0, 0.01}};
+      const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 19, .frames = frames});
+      const RigEstimate estimate = calibrate(board.observations, options);
+      ASSERT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
+      const internal::Cholesky bound(*estimate.covariance_mvb);
+      const Eigen::MatrixXd half = bound.solve_lower(estimate.covariance->matrix).transpose();
+      const Eigen::VectorXd ratios = internal::symmetric_eigenvalues(bound.solve_lower(half));
+      EXPECT_GT(ratios.minCoeff(), 1 - 1e-6) << frames << known;
+    }
+  }
 }
 
 TEST(Calibrate, TwoViewsAreTooFew) {

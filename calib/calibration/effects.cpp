@@ -22,6 +22,7 @@
 #include "calib/calibration/result_checks.h"
 #include "calib/error.h"
 #include "calib/noise/board_tests.h"
+#include "calib/noise/camera_scales.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
@@ -184,7 +185,7 @@ EffectsTest test_effects(const RigEstimate& usual, const CalibrationOptions& opt
   const bool moves = usual.rig.cameras.size() > 1;
   const NoiseParts all{.motion = moves, .shape = true, .baseline_motion = moves};
   const CornerNoiseEstimate found =
-      estimate_corner_noise(usual, all, {.field = false, .shape = true});
+      estimate_corner_noise(usual, all, {.field = false, .shape = true}, CameraNoise::of_each);
   test.shape = found.shape;
   test.motion = found.motion;
   test.isotropy = found.isotropy;

@@ -7,6 +7,7 @@
 
 #include "calib/base/decompositions.h"
 #include "calib/board/board_warp.h"
+#include "calib/noise/camera_scales.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
@@ -34,8 +35,8 @@ std::vector<BoardField> bend_fields(const std::vector<Eigen::Vector3d>& target_m
 }
 
 BoardTest board_test(const RigEstimate& usual, const std::vector<BoardField>& unknowns) {
-  const RestrictedLikelihood likelihood =
-      noise_likelihood(usual, {.motion = usual.rig.cameras.size() > 1}, unknowns);
+  const RestrictedLikelihood likelihood = noise_likelihood(
+      usual, {.motion = usual.rig.cameras.size() > 1}, unknowns, CameraNoise::of_each);
   const double spacing_m = point_spacing_m(usual.evidence->observations.target_m);
   const NoiseSolution s = fit_corner_noise(likelihood, spacing_m).solution;
   const auto n = static_cast<Eigen::Index>(unknowns.size());

@@ -12,6 +12,7 @@
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/noise/board_tests.h"
+#include "calib/noise/camera_scales.h"
 #include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
@@ -48,7 +49,8 @@ BoardObservations thinned(BoardObservations observations) {
 
 RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
                                       NoiseParts parts,
-                                      const std::vector<BoardField>& board) {
+                                      const std::vector<BoardField>& board,
+                                      CameraNoise cameras) {
   if (!estimate.evidence) {
     throw Error("corner noise", "the rig holds no evidence", "calibrate without --no-evidence");
   }
@@ -58,6 +60,7 @@ RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
   const BoardObservations observations = thinned(evidence.observations);
   std::vector<FrameRows> frames =
       frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
+  if (cameras == CameraNoise::of_each) divide_by_camera(camera_scales(frames), frames);
   std::vector<BoardField> unknown = board;
   if (estimate.calibration && estimate.calibration->board_aspect) {
     unknown.insert(unknown.begin(), aspect_field(observations.target_m));
@@ -81,9 +84,10 @@ std::vector<FrameMotion> CornerNoiseEstimate::moved() const {
 
 CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
                                           NoiseParts parts,
-                                          NoiseParts tested) {
+                                          NoiseParts tested,
+                                          CameraNoise cameras) {
   const LikelihoodOf likelihood_of = [&](NoiseParts fewer) {
-    return noise_likelihood(estimate, fewer);
+    return noise_likelihood(estimate, fewer, {}, cameras);
   };
   const double spacing_m = point_spacing_m(estimate.evidence->observations.target_m);
   return {fit_and_test(likelihood_of, parts, tested, spacing_m)};

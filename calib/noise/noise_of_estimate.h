@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/noise/board_tests.h"
+#include "calib/noise/camera_scales.h"
 #include "calib/noise/component_tests.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/restricted_likelihood.h"
@@ -16,10 +17,13 @@ namespace vernier::internal {
 /// held parameters and priors. A board whose warp is not zero is assumed to have been estimated
 /// with it, and its aspect where the summary holds it. The unknowns `board` of the board
 /// (calib/noise/board_tests.h) come last among those of the rig. Of a target with more than 80
-/// points, as many are used, evenly spaced by number. Throws Error if the estimate has no evidence.
+/// points, as many are used, evenly spaced by number. With CameraNoise::of_each the rows of cameras
+/// whose residuals differ are scaled by these (camera_scales), so that what is larger in one camera
+/// is not taken for what all see. Throws Error if the estimate has no evidence.
 RestrictedLikelihood noise_likelihood(const RigEstimate& estimate,
                                       NoiseParts parts,
-                                      const std::vector<BoardField>& board = {});
+                                      const std::vector<BoardField>& board = {},
+                                      CameraNoise cameras = CameraNoise::alike);
 
 /// The components of a calibration's corner noise, and whether each is there: nothing where a part
 /// was not fitted, or not tested.
@@ -30,9 +34,11 @@ struct CornerNoiseEstimate : TestedNoise {
   std::vector<FrameMotion> moved() const;
 };
 
-/// Each part that is in `tested` too is also fitted without, which takes as long again.
+/// Each part that is in `tested` too is also fitted without, which takes as long again. With
+/// CameraNoise::of_each white noise and field are those of a camera of scale 1.
 CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
                                           NoiseParts parts,
-                                          NoiseParts tested = {.shape = true});
+                                          NoiseParts tested = {.shape = true},
+                                          CameraNoise cameras = CameraNoise::alike);
 
 }  // namespace vernier::internal

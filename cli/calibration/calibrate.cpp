@@ -5,17 +5,21 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/board_observations.h"
 #include "calib/calibration/effects.h"
 #include "calib/noise/board_tests.h"
 #include "calib/noise/component_tests.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/validation/model_comparison.h"
+#include "calib/validation/residual_structure.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/calibrate_pairs.h"
 #include "cli/calibration/component_test.h"
@@ -72,6 +76,32 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
   for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
+}
+
+/// Root mean square residuals of each camera; empty where a shape of the board is estimated, which
+/// the evidence does not hold.
+std::vector<double> rms_of_cameras(const RigEstimate& estimate) {
+  std::vector<double> rms_px;
+  if (estimate.calibration->effects && !estimate.calibration->effects->shape_m.empty()) return {};
+  for (std::size_t c = 0; c < estimate.rig.cameras.size(); ++c) {
+    double squares = 0, corners = 0;
+    for (const CornerResidual& at : residuals_of_camera(estimate, static_cast<int>(c))) {
+      squares += at.residual_px.squaredNorm();
+      ++corners;
+    }
+    rms_px.push_back(std::sqrt(squares / (2 * corners)));
+  }
+  return rms_px;
+}
+
+/// "residuals: left 0.150 px, right 0.612 px rms"; empty for one camera.
+std::string rms_text(const Rig& rig, const std::vector<double>& rms_px) {
+  if (rms_px.size() < 2) return "";
+  std::string text = "residuals: ";
+  for (std::size_t c = 0; c < rms_px.size(); ++c) {
+    text += fmt::format("{}{} {:.3f} px", c > 0 ? ", " : "", rig.cameras[c].name, rms_px[c]);
+  }
+  return text + " rms of a coordinate\n";
 }
 
 /// " (p = 0.001)", or nothing for effects that were asked for.
@@ -178,7 +208,9 @@ void run(const CalibrateArguments& options, Session& session) {
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   report_warnings(estimate, session);
   Json json = rig_json(estimate);
-  std::string text = rig_table(estimate);
+  const std::vector<double> rms_px = rms_of_cameras(estimate);
+  json["rms_px_of_cameras"] = rms_px;
+  std::string text = rig_table(estimate) + rms_text(estimate.rig, rms_px);
   if (estimate.calibration->effects) {
     text += effects_text(*estimate.calibration->effects, test);
   } else if (options.solver.looks_for_effects()) {

@@ -74,6 +74,11 @@ std::optional<BoardView> seen_by(const Rig& rig,
   return view;
 }
 
+/// Number of cameras that must see the board.
+std::size_t number_that_must(const Rig& rig, const PlacementOptions& options) {
+  return options.cameras.empty() ? rig.cameras.size() : options.cameras.size();
+}
+
 bool must_see(int camera, const PlacementOptions& options) {
   const std::vector<int>& all = options.cameras;
   return all.empty() || std::find(all.begin(), all.end(), camera) != all.end();
@@ -95,7 +100,8 @@ std::vector<BoardView> seen_by_all(const Rig& rig,
     if (!view) return {};
     if (view->ids.size() < all) {
       const std::size_t least = std::max<std::size_t>(6, all / 4);
-      if (!options.partly || rig.cameras.size() < 2 || ++partial > 1 || view->ids.size() < least)
+      if (!options.partly || number_that_must(rig, options) < 2 || ++partial > 1 ||
+          view->ids.size() < least)
         return {};
     }
     views.push_back(std::move(*view));

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,8 @@
 #include "calib/simulated_board.h"
 #include "calib/solver/linearised_cost.h"
 #include "calib/solver/normal_equations.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
 namespace vernier::internal {
 namespace {
@@ -44,37 +47,71 @@ std::vector<Eigen::MatrixXd> in_directions(const std::vector<Eigen::MatrixXd>& v
   return restricted_views;
 }
 
-bool is_by_all(const FrameKind& kind, const Rig& rig) {
-  return kind.cameras.size() == rig.cameras.size();
+/// Poses of the board in the first camera that sees frames of this kind: in these frames, or, of
+/// fewer than three, in all that this camera sees.
+std::vector<Pose> poses_like(const FrameKind& kind,
+                             const std::vector<FrameKind>& kinds,
+                             const RigEstimate& calibration) {
+  constexpr std::size_t enough = 3;
+  const int camera = kind.cameras[0];
+  const Pose& T_camera_first = calibration.rig.T_camera_first[static_cast<std::size_t>(camera)];
+  std::vector<Pose> T_camera_board;
+  for (const FrameKind& other : kinds) {
+    const bool is_like =
+        kind.frames.size() < enough
+            ? std::binary_search(other.cameras.begin(), other.cameras.end(), camera)
+            : &other == &kind;
+    if (!is_like) continue;
+    for (const std::size_t f : other.frames) {
+      T_camera_board.push_back(T_camera_first * calibration.evidence->T_first_board[f]);
+    }
+  }
+  return T_camera_board;
 }
 
-/// Views that could follow those of one kind, by their poses in the first camera that sees them;
-/// those themselves if there are too few to show how the board is held.
-std::vector<Eigen::MatrixXd> views_like(const FrameKind& kind,
-                                        const RigEstimate& calibration,
-                                        const std::vector<Eigen::MatrixXd>& taken,
-                                        const Eigen::MatrixXd& free,
-                                        std::uint64_t seed,
-                                        std::uint32_t number) {
-  constexpr std::size_t enough = 3;
-  if (kind.frames.size() < enough) {
-    std::vector<Eigen::MatrixXd> same;
-    for (const std::size_t f : kind.frames) same.push_back(taken[f]);
-    return same;
-  }
+/// As many of these frames again, drawn with replacement.
+std::vector<Eigen::MatrixXd> taken_again(const FrameKind& kind,
+                                         const std::vector<Eigen::MatrixXd>& taken,
+                                         std::uint64_t seed,
+                                         std::uint32_t number) {
+  RandomStream draws({.seed = seed,
+                      .trial = number,
+                      .source = static_cast<std::uint32_t>(DrawSource::planned_views),
+                      .frame = 1});
+  const auto frames = static_cast<std::uint32_t>(kind.frames.size());
+  std::vector<Eigen::MatrixXd> again;
+  for (std::uint32_t i = 0; i < frames; ++i)
+    again.push_back(taken[kind.frames[draws.below(frames)]]);
+  return again;
+}
+
+/// Views that could follow those of kind `k`.
+PlannedViews views_like(const std::vector<FrameKind>& kinds,
+                        std::size_t k,
+                        const RigEstimate& calibration,
+                        const std::vector<Eigen::MatrixXd>& taken,
+                        const Eigen::MatrixXd& free,
+                        std::uint64_t seed,
+                        std::uint32_t number) {
+  const FrameKind& kind = kinds[k];
+  PlannedViews planned;
+  planned.cameras = kind.cameras;
+  planned.by_all = kind.cameras.size() == calibration.rig.cameras.size();
+  planned.taken = static_cast<int>(kind.frames.size());
   const CalibrationEvidence& evidence = *calibration.evidence;
   const std::vector<Eigen::Vector3d>& target_m = evidence.observations.target_m;
-  const Pose& T_camera_first =
-      calibration.rig.T_camera_first[static_cast<std::size_t>(kind.cameras[0])];
-  std::vector<Pose> T_camera_board;
-  for (const std::size_t f : kind.frames) {
-    T_camera_board.push_back(T_camera_first * evidence.T_first_board[f]);
+  try {
+    const PosePopulation population =
+        redrawn(pose_population(poses_like(kind, kinds, calibration), target_m), seed, number);
+    planned.views =
+        in_directions(population_views(calibration.rig, target_m, evidence.warp_m, population,
+                                       kind.cameras, views_per_pool, seed, number),
+                      free);
+  } catch (const Error&) {
+    planned.drawn = false;  // too few poses, or boards that are cut
+    planned.views = taken_again(kind, taken, seed, number);
   }
-  const PosePopulation population =
-      redrawn(pose_population(T_camera_board, target_m), seed, number);
-  return in_directions(population_views(calibration.rig, target_m, evidence.warp_m, population,
-                                        kind.cameras, views_per_pool, seed, number),
-                       free);
+  return planned;
 }
 
 /// That of all priors of a calibration; empty without one.
@@ -115,20 +152,25 @@ ViewKnowledge knowledge_of(const RigEstimate& calibration,
   const std::vector<Eigen::MatrixXd> taken = in_directions(
       reduced_normal_equations(evidence.observations, state, 1).frame_information, free);
   const std::vector<FrameKind> kinds = frame_kinds(evidence.observations, evidence.frames);
-  for (const FrameKind& kind : kinds) {
-    if (is_by_all(kind, calibration.rig)) known.taken_by_all = static_cast<int>(kind.frames.size());
-  }
   const Eigen::MatrixXd prior = information_of_priors(calibration, free);
   for (std::uint32_t pool = 0; pool < pool_count; ++pool) {
     known.pools.push_back({calibration.rig, free, taken, {}, prior});
     const std::vector<double> shares = drawn_shares(kinds, seed, pool);
     for (std::uint32_t k = 0; k < kinds.size(); ++k) {
-      known.pools.back().following.push_back(
-          {shares[k], is_by_all(kinds[k], calibration.rig),
-           views_like(kinds[k], calibration, taken, free, seed, pool + k * pool_count)});
+      PlannedViews planned =
+          views_like(kinds, k, calibration, taken, free, seed, pool + k * pool_count);
+      planned.share = shares[k];
+      known.pools.back().following.push_back(std::move(planned));
     }
   }
   return known;
+}
+
+int ViewKnowledge::taken_by_all() const {
+  if (pools.empty()) return 0;
+  int by_all = 0;
+  for (const PlannedViews& kind : pools[0].following) by_all += kind.by_all ? kind.taken : 0;
+  return by_all;
 }
 
 ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& cameras) {
@@ -136,16 +178,28 @@ ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& ca
   for (ViewPool& pool : result.pools) {
     pool.free = part_by_rig(pool.rig, cameras) * pool.free;
     pool.rig = part_of(pool.rig, cameras);
+    for (PlannedViews& kind : pool.following) {
+      kind.by_all = std::all_of(cameras.begin(), cameras.end(), [&](int camera) {
+        return std::binary_search(kind.cameras.begin(), kind.cameras.end(), camera);
+      });
+    }
   }
   return result;
 }
 
 std::optional<ViewKnowledge> with_views_by_all(const ViewKnowledge& known) {
+  constexpr int enough = 3;
   ViewKnowledge result = known;
   for (ViewPool& pool : result.pools) {
     std::erase_if(pool.following, [](const PlannedViews& kind) { return !kind.by_all; });
-    if (pool.following.empty()) return {};
-    pool.following[0].share = 1;
+    double sum = 0;
+    bool tells = false;
+    for (const PlannedViews& kind : pool.following) {
+      sum += kind.share;
+      tells = tells || kind.drawn || kind.taken >= enough;
+    }
+    if (!tells || !(sum > 0)) return {};
+    for (PlannedViews& kind : pool.following) kind.share /= sum;
   }
   return result;
 }
@@ -169,8 +223,9 @@ ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
       options.frames = views_per_pool;
       const SimulatedBoard seen = simulate_board(rig, board, options);
       const auto equations = reduced_normal_equations(seen.observations, seen.truth, 1);
-      known.pools.push_back(
-          {rig, free, {}, {{.views = in_directions(equations.frame_information, free)}}, {}});
+      PlannedViews planned;
+      planned.views = in_directions(equations.frame_information, free);
+      known.pools.push_back({rig, free, {}, {std::move(planned)}, {}});
     } catch (const Error& error) {
       why = error.fault();
     }

@@ -19,7 +19,10 @@ namespace vernier::internal {
 /// Views that could follow and that the same cameras see.
 struct PlannedViews {
   double share = 1;                    ///< of all views that could follow
-  bool by_all = true;                  ///< all cameras see them
+  std::vector<int> cameras;            ///< that see the board, ascending
+  bool by_all = true;                  ///< these are all cameras, or all that were chosen
+  int taken = 0;                       ///< number of views so far that these see
+  bool drawn = true;                   ///< poses were drawn; false: views so far, again
   std::vector<Eigen::MatrixXd> views;  ///< information S_f of each, at 1 px; free x free
 };
 
@@ -43,19 +46,23 @@ struct ViewPool {
 /// within a view.
 struct ViewKnowledge {
   std::vector<ViewPool> pools;
-  int taken = 0;            ///< number of views so far …
-  int taken_by_all = 0;     ///< … and of those that all cameras see
+  int taken = 0;            ///< number of views so far
   double noise_px = 0;      ///< σ φ
   double inflation = 1;     ///< φ²
   double noise_log_sd = 0;  ///< standard deviation of the logarithm of σ φ
+
+  /// Number of views so far that all cameras see, or all that were chosen.
+  int taken_by_all() const;
 };
 
 /// From a calibration, by its evidence: σ φ is the noise of its residuals that varies smoothly over
 /// the board (calib/planning/smooth_noise.h). Each pool has views of the calibration's pose
 /// population, redrawn (calib/planning/view_population.h), one for the frames of each set of
-/// cameras that see the board (calib/planning/frame_kinds.h), in shares that are redrawn too; of a
-/// set with fewer than three frames these themselves. Throws Error(`place`) if the estimate
-/// has no evidence of board views, or of fewer than five. Priors of the calibration count.
+/// cameras that see the board (calib/planning/frame_kinds.h), in shares that are redrawn too. A set
+/// with fewer than three frames is taken to hold the board as all frames that its first camera
+/// sees; where hardly any pose shows the whole board, as in frames that cut it, the views so far
+/// are drawn again, with replacement. Throws Error(`place`) if the estimate has no evidence of
+/// board views, or of fewer than five. Priors of the calibration count.
 ViewKnowledge knowledge_of(const RigEstimate& calibration,
                            std::uint64_t seed,
                            const std::string& place);
@@ -70,10 +77,11 @@ ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
                                      const std::string& place);
 
 /// The same for a rig of some of the cameras (calib/estimate/rig_part.h: part_of), by the views of
-/// all.
+/// all. A view is by all if all of these see it.
 ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& cameras);
 
-/// The same, if all cameras are to see every further view; nothing if none so far is seen so.
+/// The same, if all cameras are to see every further view; nothing if none so far is seen so, or so
+/// few that only these could be repeated.
 std::optional<ViewKnowledge> with_views_by_all(const ViewKnowledge& known);
 
 struct ViewPlanOptions {
@@ -87,11 +95,10 @@ struct ViewPlanOptions {
 /// The number of views in all, those taken included and at least three, after which a standard
 /// deviation is at its target for the first time, as views are added one by one.
 struct ViewsNeeded {
-  int views = 0;           ///< the median, or the end of the interval next to it; most_views if not
-                           ///< reached
+  int views = 0;           ///< the median, or the end of the interval next to it
   Interval interval;       ///< `confidence` of the sequences lie within
   double confidence = 0;   ///< that of the options, or less where the interval would be too wide
-  bool is_reached = true;  ///< whether the upper end lies below most_views
+  bool is_reached = true;  ///< false: the upper end lies above most_views, the median perhaps too
 };
 
 /// The standard deviation of a quantity (target_quantity) after `views` views.

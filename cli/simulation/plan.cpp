@@ -22,6 +22,7 @@
 #include "calib/calibration/solve_again.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_part.h"
 #include "calib/planning/views_needed.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -116,19 +117,22 @@ PlanTarget target_of(const PlanArguments& o) {
   return target;
 }
 
-/// What is known of the rig: by its board views, or by a datasheet and a board.
+/// What is known of the cameras: by the rig's board views, or by a datasheet and a board.
 void know(const PlanArguments& o,
           const RigEstimate& rig,
+          const std::vector<int>& cameras,
           const std::string& name,
           PlanResult& plan) {
+  const std::string chosen = o.cameras.empty() ? "" : ", for the cameras " + o.cameras;
   const bool has_views = rig.evidence && !rig.evidence->observations.views.empty();
   plan.from_calibration = has_views && o.board.empty();
   if (plan.from_calibration) {
     plan.known =
         with_errors_of(name, [&] { return knowledge_of(without_effects(rig), o.seed, name); });
+    if (!o.cameras.empty()) plan.known = for_cameras(plan.known, cameras);
     const bool effects = rig.calibration && rig.calibration->effects;
-    plan.basis = fmt::format("the calibration {}{} and further views of the same kind{}", name,
-                             effects ? " (without the board's shape and motion)" : "",
+    plan.basis = fmt::format("the calibration {}{} and further views of the same kind{}{}", name,
+                             effects ? " (without the board's shape and motion)" : "", chosen,
                              partial_frames_text(plan.known));
     return;
   }
@@ -138,10 +142,11 @@ void know(const PlanArguments& o,
                                     .pixel_sigma_px = o.pixel_sigma_px,
                                     .distance_m = o.board_distance_m,
                                     .tilt_rad = o.board_tilt_deg * (std::numbers::pi / 180)};
-  plan.known = knowledge_of_datasheet(rig, {columns, rows, o.square_m}, views, name);
+  plan.known = knowledge_of_datasheet(o.cameras.empty() ? rig : part_of(rig, cameras),
+                                      {columns, rows, o.square_m}, views, name);
   plan.basis = fmt::format(
-      "the datasheet {} and a {} board, squares of {:g} m, at {:g} m, tilted up to {:g} degrees",
-      name, words, o.square_m, o.board_distance_m, o.board_tilt_deg);
+      "the datasheet {} and a {} board, squares of {:g} m, at {:g} m, tilted up to {:g} degrees{}",
+      name, words, o.square_m, o.board_distance_m, o.board_tilt_deg, chosen);
 }
 
 /// Standard deviation of the depth of one match by pixel noise alone; not a number if the rig is no
@@ -251,14 +256,16 @@ void allow_for_success(const PlanArguments& o, PlanResult& plan, Session& sessio
 }
 
 /// For a success rate the uncertainty of the scale comes on top of that of the views.
-void widen_by_scale(const PlanResult& plan, const ViewPlanOptions& how, ViewsNeeded& needed) {
+void widen_by_scale(const PlanResult& plan,
+                    const ViewKnowledge& known,
+                    const ViewPlanOptions& how,
+                    ViewsNeeded& needed) {
   const double per_scale = *plan.sd_allowed / plan.scale->psi_c;
   const double loose = std::max(plan.scale->high, plan.scale->psi_c) * per_scale;
-  needed.interval.low =
-      views_needed(plan.known, "depth", plan.target.at_m, loose, how).interval.low;
+  needed.interval.low = views_needed(known, "depth", plan.target.at_m, loose, how).interval.low;
   if (plan.scale->low > 0) {
     const ViewsNeeded most =
-        views_needed(plan.known, "depth", plan.target.at_m, plan.scale->low * per_scale, how);
+        views_needed(known, "depth", plan.target.at_m, plan.scale->low * per_scale, how);
     needed.interval.high = most.interval.high;
     needed.is_reached = most.is_reached;
   } else {
@@ -274,11 +281,7 @@ void run(const PlanArguments& o, Session& session) {
   for (const std::string& warning : file.warnings) session.warn(warning);
   const std::vector<int> cameras = chosen_cameras(file.estimate.rig, o.cameras);
   if (plan.target.quantity != "projection") require_chosen_pair(file.estimate.rig, o.cameras, name);
-  know(o, file.estimate, name, plan);
-  if (!o.cameras.empty()) {
-    plan.known = for_cameras(plan.known, cameras);
-    plan.basis += ", for the cameras " + o.cameras;
-  }
+  know(o, file.estimate, cameras, name, plan);
   refuse_unused_options(*o.app, plan.target, plan.from_calibration);
   if (plan.target.quantity == "success") {
     allow_for_success(o, plan, session);
@@ -290,17 +293,22 @@ void run(const PlanArguments& o, Session& session) {
   with_errors_of(name, [&] {
     if (plan.sd_allowed) {
       plan.needed = views_needed(plan.known, what, plan.target.at_m, *plan.sd_allowed, how);
-      if (plan.scale) widen_by_scale(plan, how, *plan.needed);
+      if (plan.scale) widen_by_scale(plan, plan.known, how, *plan.needed);
       const auto better =
           has_partial_frames(plan.known) ? with_views_by_all(plan.known) : std::nullopt;
       if (better) {
         plan.needed_by_all = views_needed(*better, what, plan.target.at_m, *plan.sd_allowed, how);
+        if (plan.scale) widen_by_scale(plan, *better, how, *plan.needed_by_all);
       }
       if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
-        plan.limit = fmt::format(
-            "it takes more than {} of this kind; what limits is each "
-            "view: more corners, larger tilts, a closer board or less noise",
-            counted(how.most_views, "view"));
+        plan.limit =
+            fmt::format("it takes more than {} of this kind; ", counted(how.most_views, "view"));
+        plan.limit +=
+            plan.needed_by_all && plan.needed_by_all->is_reached
+                ? "what limits is how few of them all cameras see: " +
+                      by_all_text(*plan.needed_by_all)
+                : "what limits is each view: more corners, larger tilts, a closer board or less "
+                  "noise";
       }
     }
     std::vector<int> numbers;

@@ -69,20 +69,26 @@ std::string answer_text(const PlanResult& plan) {
   }
   text += "\n";
   if (plan.needed_by_all && plan.needed_by_all->views < needed.views) {
-    text += fmt::format("{}, {:.0f} to {:.0f}, if all cameras see the board in the further ones\n",
-                        counted(plan.needed_by_all->views, "view"),
-                        plan.needed_by_all->interval.low, plan.needed_by_all->interval.high);
+    text += by_all_text(*plan.needed_by_all) + "\n";
   }
   return text;
 }
 
 }  // namespace
 
-bool has_partial_frames(const ViewKnowledge& known) { return known.taken_by_all < known.taken; }
+std::string by_all_text(const ViewsNeeded& needed) {
+  return fmt::format(
+      "{}, {:.0f} to {:.0f} with {:.0f} % confidence, if all cameras see the board in the further "
+      "ones",
+      counted(needed.views, "view"), needed.interval.low, needed.interval.high,
+      100 * needed.confidence);
+}
+
+bool has_partial_frames(const ViewKnowledge& known) { return known.taken_by_all() < known.taken; }
 
 std::string partial_frames_text(const ViewKnowledge& known) {
   if (!has_partial_frames(known)) return "";
-  return fmt::format(" ({} of {} are seen by all cameras)", known.taken_by_all, known.taken);
+  return fmt::format(" ({} of {} are seen by all cameras)", known.taken_by_all(), known.taken);
 }
 
 Json plan_json(const PlanResult& plan) {
@@ -94,7 +100,7 @@ Json plan_json(const PlanResult& plan) {
             {"basis", plan.basis},
             {"from", plan.from_calibration ? "calibration" : "datasheet"},
             {"views_so_far", plan.known.taken},
-            {"views_so_far_by_all", plan.known.taken_by_all},
+            {"views_so_far_by_all", plan.known.taken_by_all()},
             {"noise_px", plan.known.noise_px},
             {"inflation", plan.known.inflation},
             {"reachable", plan.is_reachable() ? Json(*plan.is_reachable()) : Json()},
@@ -104,6 +110,8 @@ Json plan_json(const PlanResult& plan) {
             {"views_by_all", plan.needed_by_all ? Json(plan.needed_by_all->views) : Json()},
             {"views_by_all_interval",
              plan.needed_by_all ? ends_json(plan.needed_by_all->interval) : Json()},
+            {"views_by_all_confidence",
+             plan.needed_by_all ? Json(plan.needed_by_all->confidence) : Json()},
             {"confidence", plan.needed ? Json(plan.needed->confidence) : Json()},
             {"sd_allowed", plan.sd_allowed ? Json(*plan.sd_allowed) : Json()},
             {"pixel_noise_sd_m", json_number(plan.pixel_noise_sd)},

@@ -48,10 +48,13 @@ struct PlanResult {
   }
 };
 
-/// Whether some cameras did not see the board in some frames so far.
+/// "202 views, 143 to 286 with 95 % confidence, if all cameras see the board in the further ones"
+std::string by_all_text(const ViewsNeeded& needed);
+
+/// Whether some cameras, of those that were chosen, did not see the board in some frames so far.
 bool has_partial_frames(const ViewKnowledge& known);
 
-/// " (6 of 36 seen by all cameras)"; empty if all are.
+/// " (6 of 36 are seen by all cameras)"; empty if all are.
 std::string partial_frames_text(const ViewKnowledge& known);
 
 Json plan_json(const PlanResult& plan);

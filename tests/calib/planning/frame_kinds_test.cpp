@@ -11,6 +11,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/estimate/rig_part.h"
 #include "calib/planning/view_population.h"
@@ -19,6 +20,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
 #include "calib/uncertainty/target_quantity.h"
 #include "tests/support/scenes.h"
 
@@ -45,7 +47,7 @@ TEST(FrameKinds, FurtherViewsAreSeenByAsManyCamerasAsThoseSoFar) {
   const BoardObservations some = partly_seen(views(24).observations, 1, 4);
   const ViewKnowledge partial = knowledge_of(calibrate(some), 1, "rig.json");
   EXPECT_EQ(partial.taken, 24);
-  EXPECT_EQ(partial.taken_by_all, 6);
+  EXPECT_EQ(partial.taken_by_all(), 6);
   ASSERT_EQ(partial.pools[0].following.size(), 3U);  // both, left alone, right alone
   // what one camera sees alone says nothing of the rig's turn: the sum of the shares that do counts
   const double target = 0.5 * sd_after(partial, "depth", 3, {24})[0].sd;
@@ -124,6 +126,81 @@ TEST(FrameKinds, APairOfThreeCamerasIsPlannedByTheViewsOfAll) {
                 1e-6 * expected);
     EXPECT_LT(sd_after(of_pair, "depth", 3, {32})[0].sd, 0.7 * expected);
   }
+}
+
+/// The view of a board that is moved along the camera's x axis until less than half of it is seen.
+BoardView cut_view(const SimulatedBoard& board, const BoardView& whole) {
+  const auto c = static_cast<std::size_t>(whole.camera);
+  const Rig& rig = board.truth.rig;
+  RandomStream draws({.seed = 12, .trial = static_cast<std::uint32_t>(whole.frame)});
+  for (double move_m = 0;; move_m += 0.02) {
+    BoardView cut{whole.frame, whole.camera, {}, {}};
+    for (const int id : whole.ids) {
+      const auto& X = board.observations.target_m[static_cast<std::size_t>(id)];
+      Eigen::Vector3d x = rig.T_camera_first[c] *
+                          (board.truth.T_first_board[static_cast<std::size_t>(whole.frame)] * X);
+      x.x() += move_m;
+      const Eigen::Vector2d pixel = project(rig.cameras[c], x);
+      if (!in_image(rig.cameras[c], pixel)) continue;
+      cut.ids.push_back(id);
+      cut.pixels_px.emplace_back(pixel + 0.2 * Eigen::Vector2d(draws.normal(), draws.normal()));
+    }
+    if (2 * cut.ids.size() < whole.ids.size()) return cut;
+  }
+}
+
+// Frames that cut the board are no reason not to plan, and say what they say.
+TEST(FrameKinds, CutBoardsAreDrawnAgain) {
+  const SimulatedBoard all = views(24);
+  BoardObservations some = partly_seen(all.observations, 3, 4);
+  const ViewKnowledge whole = knowledge_of(calibrate(some), 1, "rig.json");
+  for (BoardView& view : some.views) {
+    if (view.frame % 4 == 3) view = cut_view(all, view);
+  }
+  const ViewKnowledge known = knowledge_of(calibrate(some), 1, "rig.json");
+  ASSERT_EQ(known.pools[0].following.size(), 2U);
+  EXPECT_TRUE(known.pools[0].following[0].drawn);
+  EXPECT_FALSE(known.pools[0].following[1].drawn);
+  EXPECT_EQ(known.pools[0].following[1].views.size(), 6U);
+  const double target = 0.5 * sd_after(known, "depth", 3, {24})[0].sd;
+  const int cut = views_needed(known, "depth", 3, target).views;
+  EXPECT_NEAR(cut, views_needed(whole, "depth", 3, target).views, 0.2 * cut);
+}
+
+// Two frames that both cameras see are taken to be held as those of one: they are not repeated,
+// which would show no new tilt.
+TEST(FrameKinds, FewFramesAreHeldAsTheOthersAre) {
+  BoardObservations some = views(24).observations;
+  std::erase_if(some.views, [](const BoardView& view) {
+    return view.frame >= 2 && view.camera == view.frame % 2;
+  });
+  const ViewKnowledge known = knowledge_of(calibrate(some), 1, "rig.json");
+  EXPECT_EQ(known.taken_by_all(), 2);
+  ASSERT_TRUE(known.pools[0].following[0].drawn);
+  EXPECT_GT(known.pools[0].following[0].views.size(), 2U);
+  const double target = 0.4 * sd_after(known, "depth", 3, {24})[0].sd;
+  const ViewsNeeded alike = views_needed(known, "depth", 3, target),
+                    by_all = views_needed(*with_views_by_all(known), "depth", 3, target);
+  EXPECT_LT(by_all.views, alike.views);
+  EXPECT_LT(by_all.views, 24 + 60);
+}
+
+TEST(FrameKinds, ByAllMeansByAllThatWereChosen) {
+  Rig rig = test::stereo_rig();
+  rig.cameras.push_back(rig.cameras[0]);
+  rig.cameras[2].name = "middle";
+  rig.T_camera_first.push_back({rotation_from_vector({0.01, 0.02, -0.01}), {-0.05, 0.01, 0}});
+  BoardObservations some = views(16, rig).observations;
+  std::erase_if(some.views,
+                [](const BoardView& view) { return view.camera == 2 && view.frame % 4; });
+  const ViewKnowledge known = knowledge_of(calibrate(some), 1, "rig.json");
+  EXPECT_EQ(known.taken_by_all(), 4);
+  EXPECT_EQ(for_cameras(known, {0, 1}).taken_by_all(), 16);
+  EXPECT_EQ(for_cameras(known, {2, 1}).taken_by_all(), 4);
+  const auto better = with_views_by_all(for_cameras(known, {0, 1}));
+  double shares = 0;
+  for (const PlannedViews& kind : better->pools[0].following) shares += kind.share;
+  EXPECT_NEAR(shares, 1, 1e-12);
 }
 
 }  // namespace

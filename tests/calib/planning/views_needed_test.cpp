@@ -143,7 +143,11 @@ TEST(ViewsNeeded, FurtherViewsAreSeenByAsManyCamerasAsThoseSoFar) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(1, 1);
   std::vector<PlannedViews>& following = known.pools[0].following;
   following[0].share = 0.25;
-  following.push_back({0.75, false, {none}});
+  PlannedViews by_one;
+  by_one.share = 0.75;
+  by_one.by_all = false;
+  by_one.views = {none};
+  following.push_back(by_one);
   const ViewsNeeded needed = views_needed(known, counted, 1, 0.1);
   EXPECT_NEAR(needed.views, 4 + 4 * 96, 12);
   EXPECT_EQ(views_needed(*with_views_by_all(known), counted, 1, 0.1).views, 100);

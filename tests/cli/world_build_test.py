@@ -170,6 +170,31 @@ class WorldBuild(verb_calls.ProgramCase):
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn('give --height-m 1.3', run.stderr)
 
+    def test_depths_of_another_scale_are_doubted(self):
+        poses = ['frame,' + ','.join(f't{i}{j}' for i in range(4) for j in range(4))]
+        for i in range(24):
+            x, y, turn = 2 + 0.15 * i, 1.5 + 0.1 * math.sin(i), 0.12 * i
+            c, s = math.cos(turn), math.sin(turn)
+            poses.append(f'v{i},{s},0,{c},{x},{-c},0,{s},{y},0,-1,0,1.2,0,0,0,1')
+        (self.folder / 'way.csv').write_text('\n'.join(poses) + '\n')
+        (self.folder / 'K.txt').write_text('525 0 320\n0 525 240\n0 0 1\n')
+        self.done('convert', 'K.txt', '--size', '640x480', '-o', 'K.json')
+        self.done('simulate', '--world', 'workshop', '--rig', 'K.json', '--poses', 'way.csv', '--height-m', '0',
+                  '--features', 'views.jsonl', '--segments', 'right.jsonl', '--source', 'none', '--source',
+                  'endpoint_sigma_px=0.3')
+        for scale, doubt in ((1, ''), (1.03, '% too far: check the scale'), (0.97, '% too near: check the scale')):
+            views = [json.loads(line) for line in (self.folder / 'right.jsonl').read_text().splitlines()]
+            for segment in (segment for view in views for segment in view['segments']):
+                for end in ('a_m', 'b_m'):
+                    if segment.get(end):
+                        segment[end] = [scale * x for x in segment[end]]
+            (self.folder / 'scaled.jsonl').write_text(''.join(json.dumps(view) + '\n' for view in views))
+            found = json.loads(self.done('world', 'build', '--segments', 'scaled.jsonl', '--poses', 'way.csv',
+                                         '--height-m', '0', '-o', 'b.toml', '--json', code=3 if doubt else 0))
+            self.assertEqual(found['point_scales']['joined_again'], bool(doubt))
+            self.assertAlmostEqual(found['point_scales']['depth'], 1 / scale - 1, delta=0.002)
+            self.assertIn(doubt, ' '.join(found['doubts']))
+
     def test_poses_that_cannot_be_right_are_doubted(self):
         head, *rows = (self.folder / 'poses.csv').read_text().splitlines()
         self.assertEqual(self.run_program(*BUILD, '-o', 'b.toml').returncode, 0)

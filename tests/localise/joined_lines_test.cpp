@@ -22,6 +22,7 @@
 #include "calib/statistics/random.h"
 #include "localise/join/line_fit.h"
 #include "tests/support/error_message.h"
+#include "tests/support/line_scenes.h"
 
 namespace vernier::localise {
 namespace {
@@ -30,85 +31,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using test::error_message;
+using test::random_lines;
+using test::Scene;
+using test::scene_of;
+using test::TrueLine;
 using vernier::internal::RandomStream;
-
-struct TrueLine {
-  Vector3d a_m, b_m;
-};
-
-/// Which line of the truth every segment shows.
-struct Scene {
-  std::vector<SegmentsOfView> views;
-  std::vector<std::vector<int>> truth;
-};
-
-/// A camera at `eye` that looks at `target`, z of the world up.
-Pose looking(const Vector3d& eye, const Vector3d& target) {
-  const Vector3d z = (target - eye).normalized(), x = z.cross(Vector3d::UnitZ()).normalized();
-  Matrix3d R;
-  R << x, z.cross(x), z;
-  return {R, eye};
-}
-
-/// Covariance of an end: 0.4 px across the ray at f = 500 px, 1.5e-3 z² along it.
-Matrix3d covariance_of(const Vector3d& p) {
-  const Vector3d ray = p.normalized();
-  const double across = 0.4 / 500 * p.norm(), along = 0.002 + 1.5e-3 * p.squaredNorm();
-  return across * across * Matrix3d::Identity() +
-         (along * along - across * across) * ray * ray.transpose();
-}
-
-/// Adds what a camera sees of a line: a random part, with noise drawn from its covariance.
-void add_sighting(SegmentsOfView& view,
-                  const Pose& T_camera_world,
-                  const TrueLine& line,
-                  RandomStream& draws) {
-  const double t0 = draws.uniform(0, 0.3), t1 = draws.uniform(0.7, 1);
-  const Vector3d d = line.b_m - line.a_m;
-  Vector3d a = T_camera_world * Vector3d(line.a_m + t0 * d);
-  Vector3d b = T_camera_world * Vector3d(line.a_m + t1 * d);
-  if (draws.uniform() < 0.5) std::swap(a, b);
-  SightedSegment s;
-  s.covariance_m2.setZero();
-  s.covariance_m2.topLeftCorner<3, 3>() = covariance_of(a);
-  s.covariance_m2.bottomRightCorner<3, 3>() = covariance_of(b);
-  // depths of both ends err together in part, as those of one edge
-  const Vector3d ra = a.normalized(), rb = b.normalized();
-  const double common = 1e-6 * a.squaredNorm() * b.squaredNorm();
-  s.covariance_m2.topRightCorner<3, 3>() = common * ra * rb.transpose();
-  s.covariance_m2.bottomLeftCorner<3, 3>() = common * rb * ra.transpose();
-  const Eigen::VectorXd noise = s.covariance_m2.llt().matrixL() * draws.normals(6);
-  s.a_m = a + noise.head<3>();
-  s.b_m = b + noise.tail<3>();
-  view.segments.push_back(s);
-}
-
-/// Views from a ring about the lines. Their poses err as `options` say; `shared` moves the lines.
-Scene scene_of(const std::vector<TrueLine>& lines,
-               int views,
-               std::uint32_t trial,
-               const JoinOptions& options,
-               double seen_share = 1) {
-  Scene scene;
-  for (int v = 0; v < views; ++v) {
-    RandomStream draws({.seed = 5, .trial = trial, .feature = static_cast<std::uint32_t>(v)});
-    const double angle = draws.uniform(-1, 1) + 0.3 * v;
-    const Vector3d eye(3 * std::cos(angle), 3 * std::sin(angle), draws.uniform(1, 1.8));
-    const Pose T_world_camera = looking(eye, Vector3d(0, 0, 1.2));
-    SegmentsOfView view;
-    scene.truth.emplace_back();
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (draws.uniform() > seen_share) continue;
-      add_sighting(view, T_world_camera.inverse(), lines[i], draws);
-      scene.truth.back().push_back(static_cast<int>(i));
-    }
-    const Vector3d turn = options.view_turn_rad * draws.normals(3);
-    const Vector3d step = options.view_position_m * draws.normals(3);
-    view.T_world_camera = {rotation_from_vector(turn) * T_world_camera.R, T_world_camera.t + step};
-    scene.views.push_back(view);
-  }
-  return scene;
-}
 
 /// Squared Mahalanobis distance of the true infinite line at the ends of a joined one.
 double nees(const JoinedLine& line, const TrueLine& truth) {
@@ -125,19 +52,6 @@ double nees(const JoinedLine& line, const TrueLine& truth) {
   }
   const Eigen::Matrix4d C = P * line.covariance_m2 * P.transpose();
   return error.dot(C.llt().solve(error));
-}
-
-/// Lines of a room: at random places and directions.
-std::vector<TrueLine> random_lines(int count, std::uint32_t trial) {
-  std::vector<TrueLine> lines;
-  for (int i = 0; i < count; ++i) {
-    RandomStream draws({.seed = 6, .trial = trial, .feature = static_cast<std::uint32_t>(i)});
-    const Vector3d middle(draws.uniform(-1.5, 1.5), draws.uniform(-1.5, 1.5),
-                          draws.uniform(0, 2.4));
-    const Vector3d along = Vector3d(draws.normals(3)).normalized() * draws.uniform(0.15, 0.8);
-    lines.push_back({middle - along, middle + along});
-  }
-  return lines;
 }
 
 JoinOptions exact_poses() {

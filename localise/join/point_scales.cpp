@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/join/point_scales.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "localise/join/line_fit.h"
+#include "localise/joined_lines.h"
+
+namespace vernier::localise::internal {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix4d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using Matrix42 = Eigen::Matrix<double, 4, 2>;
+
+constexpr std::size_t fewest_views = 10;
+
+/// D: of both ends across the line, by the scale of the whole point and by that of x and y.
+Matrix42 by_scales(const SightedSegment& segment,
+                   const Eigen::Matrix3d& R,
+                   const LineFrame& frame) {
+  Matrix42 D;
+  int row = 0;
+  for (const Vector3d& p : {segment.a_m, segment.b_m}) {
+    const Vector3d across(p.x(), p.y(), 0);
+    D.block<2, 1>(row, 0) = frame.axes.leftCols<2>().transpose() * (R * p);
+    D.block<2, 1>(row, 1) = frame.axes.leftCols<2>().transpose() * (R * across);
+    row += 2;
+  }
+  return D;
+}
+
+/// What the sightings of one view say: I and the score.
+struct OfView {
+  Matrix2d information = Matrix2d::Zero();
+  Vector2d score = Vector2d::Zero();
+};
+
+/// What the sightings of all lines say, line by line.
+class Sums {
+ public:
+  void add(std::span<const SegmentsOfView> views,
+           const JoinedLine& line,
+           const JoinOptions& options) {
+    std::vector<WorldSighting> sightings;
+    for (const LineSighting& s : line.sightings) {
+      sightings.push_back(in_world(segment_of(views, s), views[s.view].T_world_camera, options));
+      sightings.back().view = s.view;
+      sightings.back().covariance_m2.diagonal().array() += 1e-10;  // (0.01 mm)²
+    }
+    std::vector<const WorldSighting*> all;
+    for (const WorldSighting& s : sightings) all.push_back(&s);
+    const FittedLine fit = fitted(all);
+    std::vector<Matrix42> weighted, D;  // C⁻¹ D
+    Matrix42 pull = Matrix42::Zero();
+    for (std::size_t k = 0; k < sightings.size(); ++k) {
+      const LineMeasurement m = measured(sightings[k], fit.frame);
+      D.push_back(by_scales(segment_of(views, line.sightings[k]),
+                            views[sightings[k].view].T_world_camera.R, fit.frame));
+      weighted.emplace_back(m.covariance_m2.llt().solve(D.back()));
+      pull += m.by_line().transpose() * weighted.back();
+    }
+    const Matrix42 moves = fit.covariance * pull;  // of the line by the scales
+    for (std::size_t k = 0; k < sightings.size(); ++k) {
+      const LineMeasurement m = measured(sightings[k], fit.frame);
+      const Matrix42 E = D[k] - m.by_line() * moves;
+      const Eigen::LLT<Matrix4d> C(m.covariance_m2);
+      OfView& view = of_views_[sightings[k].view];
+      view.information += E.transpose() * C.solve(E);
+      view.score += E.transpose() * C.solve(m.across_m);
+    }
+  }
+
+  std::optional<PointScales> result() const {
+    if (of_views_.size() < fewest_views) return {};
+    OfView all;
+    for (const auto& [number, view] : of_views_) {
+      all.information += view.information;
+      all.score += view.score;
+    }
+    const Matrix2d& I = all.information;
+    if (!(I.determinant() > 1e-9 * I(0, 0) * I(1, 1))) return {};
+    const Matrix2d inverse = I.inverse();
+    const Vector2d x = -inverse * all.score;
+    Matrix2d scatter = Matrix2d::Zero();
+    for (const auto& [number, view] : of_views_) {
+      const Vector2d left = view.score + view.information * x;
+      scatter += left * left.transpose();
+    }
+    const auto n = static_cast<double>(of_views_.size());
+    const Matrix2d covariance = n / (n - 1) * inverse * scatter * inverse;
+    PointScales found;
+    found.depth = x[0];
+    found.across = x[1];
+    found.depth_sigma = std::sqrt(covariance(0, 0));
+    found.across_sigma = std::sqrt(covariance(1, 1));
+    return found;
+  }
+
+ private:
+  static const SightedSegment& segment_of(std::span<const SegmentsOfView> views,
+                                          const LineSighting& s) {
+    return views[static_cast<std::size_t>(s.view)].segments[static_cast<std::size_t>(s.segment)];
+  }
+
+  std::map<int, OfView> of_views_;
+};
+
+/// The views with the points of their segments multiplied by these scales.
+std::vector<SegmentsOfView> scaled_views(std::span<const SegmentsOfView> views, const Vector2d& x) {
+  const double depth = 1 + x[0], across = depth + x[1];
+  Eigen::Matrix<double, 6, 1> by;
+  by << across, across, depth, across, across, depth;
+  std::vector<SegmentsOfView> scaled(views.begin(), views.end());
+  for (SegmentsOfView& view : scaled) {
+    for (SightedSegment& s : view.segments) {
+      s.a_m = by.head<3>().cwiseProduct(s.a_m);
+      s.b_m = by.head<3>().cwiseProduct(s.b_m);
+      s.covariance_m2 = (by.asDiagonal() * s.covariance_m2 * by.asDiagonal()).eval();
+    }
+  }
+  return scaled;
+}
+
+}  // namespace
+
+std::optional<PointScales> point_scales(std::span<const SegmentsOfView> views,
+                                        const JoinedLines& joined,
+                                        const JoinOptions& options) {
+  Sums sums;
+  for (const JoinedLine& line : joined.lines) {
+    if (line.views > 1) sums.add(views, line, options);
+  }
+  return sums.result();
+}
+
+PointScales joined_point_scales(std::span<const SegmentsOfView> views,
+                                const PointScales& first,
+                                const JoinOptions& options) {
+  constexpr int most_joins = 5;
+  constexpr double settled = 5e-4, first_factor = 4, most_factor = 8, most = 0.2;
+  Vector2d x = Vector2d::Zero(), left(first.depth, first.across),
+           gain = {first_factor, first_factor};
+  PointScales at = first;
+  for (int join = 0; join < most_joins; ++join) {
+    const Vector2d step = gain.cwiseProduct(left);
+    if (step.cwiseAbs().maxCoeff() < settled) break;
+    const Vector2d next = (x + step).cwiseMax(-most).cwiseMin(most);
+    const std::vector<SegmentsOfView> scaled = scaled_views(views, next);
+    const auto found = point_scales(scaled, join_lines(scaled, options), options);
+    if (!found) break;
+    const Vector2d still(found->depth, found->across);
+    for (int i = 0; i < 2; ++i) {
+      const double gone = left[i] - still[i];
+      const double secant = std::abs(gone) > 0 ? (next[i] - x[i]) / gone : first_factor;
+      gain[i] = secant > 1 && secant < most_factor ? secant : secant < 1 ? 1 : most_factor;
+    }
+    x = next;
+    left = still;
+    at = *found;
+  }
+  return {x[0] + at.depth, x[1] + at.across, at.depth_sigma, at.across_sigma, true};
+}
+
+}  // namespace vernier::localise::internal

@@ -308,8 +308,9 @@ ProjectionDifference projection_difference(const Rig& a,
   const std::vector<SeenPoint> focus = focus_of(points);
   if (focus.size() < 6) {
     throw Error("projection difference",
-                "fewer than 6 pixels have a ray in one rig and an image in the other",
-                "give a finer grid, or check that the rigs face the same way");
+                "fewer than 6 pixels of the focus have a ray in one rig, within 80 degrees of its "
+                "axis, and an image in the other",
+                "give a finer grid or a wider focus, or check that the rigs face the same way");
   }
   const double nearest_m = nearest(options);
   result.T_b_a = align(b, focus, nearest_m);

@@ -102,6 +102,10 @@ void rename(RigEstimate& estimate, const std::string& list) {
 
 /// Throws Error for options whose value the input already contains.
 void check_options(const ConvertArguments& options, RigFormat from) {
+  if (from == RigFormat::kitti && options.size.find(',') != std::string::npos) {
+    throw Error("--size " + options.size, "images of a KITTI file have one size",
+                "give one, such as --size 1241x376");
+  }
   if (!options.size.empty() && from != RigFormat::opencv && from != RigFormat::kitti) {
     throw Error("--size", fmt::format("{} files contain the image size", name(from)),
                 "leave it out");
@@ -139,8 +143,8 @@ void write_all(const NamedContents& files, const std::filesystem::path& output) 
   outputs.commit();
 }
 
-/// Warns of cameras whose size is probably another's.
-void warn_of_far_centres(const Rig& rig, const Session& session) {
+/// Warns of cameras whose size is probably another's. `told` is the size that was given, or empty.
+void warn_of_far_centres(const Rig& rig, const std::string& told, const Session& session) {
   constexpr double far_off = 0.2;  // of a side, from the middle; lenses differ by a few percent
   for (const Camera& camera : rig.cameras) {
     const Eigen::Array2d size = camera.size_px.cast<double>();
@@ -148,19 +152,22 @@ void warn_of_far_centres(const Rig& rig, const Session& session) {
     if ((off.abs() <= far_off * size).all()) continue;
     session.warn(fmt::format(
         "camera \"{}\": its principal point ({:.0f}, {:.0f}) is far from the middle of {}x{} px; "
-        "check the size of its images (--size 640x480,1280x960 gives one of each camera)",
-        camera.name, camera.ox_px(), camera.oy_px(), camera.size_px[0], camera.size_px[1]));
+        "check the size of its images{}",
+        camera.name, camera.ox_px(), camera.oy_px(), camera.size_px[0], camera.size_px[1],
+        told.empty() ? ", which the file gives"
+                     : " (--size 640x480,1280x960 gives one of each camera)"));
   }
 }
 
 void report_notes(const ReadRig& read,
                   RigFormat from,
                   const std::vector<std::string>& losses,
+                  const std::string& told_size,
                   const Session& session) {
   for (const std::string& note : read.notes) session.info(note);
   warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);
-  warn_of_far_centres(read.estimate.rig, session);
+  warn_of_far_centres(read.estimate.rig, told_size, session);
 }
 
 void run(const ConvertArguments& options, Session& session) {
@@ -181,7 +188,7 @@ void run(const ConvertArguments& options, Session& session) {
   if (to == RigFormat::colmap) check_no_reconstruction(files);
   write_all(files, options.output);
   const std::vector<std::string> losses = lost(to, read.estimate);
-  report_notes(read, from, losses, session);
+  report_notes(read, from, losses, options.size, session);
 
   Json cameras = Json::array(), written = Json::array();
   std::string text;

@@ -147,9 +147,11 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
   constexpr double most_below = 0.2;  // of all: a stairwell shows some
   if (static_cast<double>(f.below_floor) > most_below * static_cast<double>(f.placed)) {
     session.add_trust_warning(fmt::format(
-        "{} of {} segments lie more than {} m below the floor: check the unit of the depth maps, "
-        "--depth-unit-m, that of the poses, and --height-m",
-        f.below_floor, f.placed, below_floor_m));
+        "{} of {} segments lie more than {} m below the floor: check {}, and the unit of the depth "
+        "maps, --depth-unit-m",
+        f.below_floor, f.placed, below_floor_m,
+        options.poses.empty() ? "--height-m, --pitch-deg and --roll-deg"
+                              : "--up, --height-m, the unit of the poses"));
   }
   Json json{{"images", f.lines.size()},
             {"segments", f.segments},

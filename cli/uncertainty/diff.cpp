@@ -62,9 +62,10 @@ void add_warnings(const DiffArguments& options, Comparison& found) {
                      options.covariance == "mvb" ? "minimum variance" : "honest"));
   }
   if (found.projection.left_out > 0) {
-    warn(fmt::format(
-        "{} grid points cannot be unprojected in one rig or projected in the other; excluded",
-        found.projection.left_out));
+    warn(
+        fmt::format("{} grid points have no ray in one rig or lie behind the other, or have no "
+                    "image in it; excluded",
+                    found.projection.left_out));
   }
   if (found.a.evidence && found.b.evidence) {
     found.shared_views =

@@ -182,9 +182,11 @@ std::optional<EdgeDepth> depth_beside(const EdgesWithDepth& view, const EdgePoin
 }
 
 /// Whether the depths of both sides of an edge are of two surfaces.
-bool is_step(double nearer_m, double farther_m, const DepthNoise& noise) {
-  const double sigma = std::numbers::sqrt2 * sigma_of(nearer_m, noise);
-  return farther_m - nearer_m > std::max(off_sigma * sigma, step_share * nearer_m);
+bool is_step(const EdgeDepth& nearer, const EdgeDepth& farther, const DepthNoise& noise) {
+  const DepthNoise of_both{noise.floor_m * std::sqrt(nearer.noise + farther.noise),
+                           noise.per_m2 * std::numbers::sqrt2};
+  return farther.z_m - nearer.z_m >
+         std::max(off_sigma * sigma_of(nearer.z_m, of_both), step_share * nearer.z_m);
 }
 
 /// The depth of an edge point: the nearer one at a step. Where one side is not known, the other is
@@ -196,12 +198,12 @@ std::optional<EdgeDepth> depth_at(const EdgesWithDepth& view, const EdgePoint& e
   if (!dark || !bright) {
     const EdgeDepth known = dark ? *dark : *bright;
     const auto beyond = nearest_beyond(view, e, dark ? 1 : -1);
-    if (!beyond || is_step(*beyond, known.z_m, view.noise)) return {};
+    if (!beyond || is_step({*beyond, 1}, known, view.noise)) return {};
     return known;
   }
   const auto [nearer, farther] =
       dark->z_m < bright->z_m ? std::pair(*dark, *bright) : std::pair(*bright, *dark);
-  if (is_step(nearer.z_m, farther.z_m, view.noise)) return nearer;
+  if (is_step(nearer, farther, view.noise)) return nearer;
   return EdgeDepth{(dark->z_m + bright->z_m) / 2, (dark->noise + bright->noise) / 4};
 }
 

@@ -39,11 +39,13 @@ struct DepthSegments {
 
 /// Straight edges of an image with the depths of an aligned map. At an edge point the depth of
 /// either side is that of a plane through the pixels at 1 to 5 px across, whose inverse depth is
-/// linear in the image, at the edge; their median where they lie on none. Where both sides differ
-/// by more than 3 standard deviations and 2 %, the edge is that of the nearer surface, which hides
-/// the other one; else it is their mean. Where one side is not known, the other counts only if what
-/// is known beyond it, up to 40 px, is not nearer. A straight line in space has an inverse depth
-/// that is linear along its image, so the rest is as for disparities
+/// linear in the image, at the edge; their median where they lie on none. The pixels end at the
+/// next edge if three are left before it, and the nearest, which may hold both sides, is left out
+/// where the others lie on a plane without it. Where both sides differ by more than 3 standard
+/// deviations and 2 %, the edge is that of the nearer surface, which hides the other one; else it
+/// is their mean. Where one side is not known, the other counts only if what is known beyond it, up
+/// to 40 px, is not nearer; if nothing is, the edge has no depth. A straight line in space has an
+/// inverse depth that is linear along its image, so the rest is as for disparities
 /// (stereo/reconstruction/segment_disparity.h), with d = f / z: consensus along the edge, parts
 /// where surfaces change, covariance. Depth errors are not correlated with the place of the edge.
 /// Throws Error unless the camera is a pinhole and both images have its size.

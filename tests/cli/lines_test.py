@@ -130,7 +130,7 @@ class Lines(verb_calls.ProgramCase):
 
     def test_what_cannot_be_right_is_doubted(self):
         for words, doubt in ((['--depth-unit-m', '0.1'], 'check the unit of the depth maps'),
-                             (['--pitch-deg', '40', '--height-m', '0.5'], 'm below the floor: check the unit'),
+                             (['--pitch-deg', '40', '--height-m', '0.5'], 'm below the floor: check --height-m, --pitch-deg and --roll-deg'),
                              (['--poses', 'poses.csv', '--up', 'y'], 'check --up')):
             run = self.run_program(*CALL, *words, '-o', 'out.jsonl')
             self.assertEqual(run.returncode, 3, run.stderr)

@@ -185,44 +185,51 @@ std::optional<PointScales> tested_scales(const SeenViews& seen,
   // what good views have (a walk with a real sensor: 0.0004 and 0.0016), with something to spare
   constexpr double least_depth = 0.0015, least_across = 0.004, sigmas = 5;
   const std::optional<PointScales> first = point_scales(seen.views, joined, how);
-  if (!first || (std::abs(first->depth) < std::max(least_depth, sigmas * first->depth_sigma) &&
-                 std::abs(first->across) < std::max(least_across, sigmas * first->across_sigma))) {
-    return first;
-  }
+  if (!first) return first;
+  const bool depth_is_off =
+      first->tells_depth() &&
+      std::abs(first->depth) > std::max(least_depth, sigmas * first->depth_sigma);
+  const bool across_is_off =
+      first->tells_across() &&
+      std::abs(first->across) > std::max(least_across, sigmas * first->across_sigma);
+  if (!depth_is_off && !across_is_off) return first;
   session.info(
       "the lines of the views do not fit each other: looking for the scale of their points");
   return joined_point_scales(seen.views, *first, how);
 }
 
 void doubt_scales(const std::optional<PointScales>& scales, Session& session) {
-  constexpr double least = 0.01, sigmas = 5;
-  const auto is_off = [&](double value, double sigma) {
-    return std::abs(value) > std::max(least, sigmas * sigma);
-  };
+  // beyond what a few views of a real walk show of themselves, 0.3 and 1.0 %
+  constexpr double least_depth = 0.01, least_across = 0.015, sigmas = 5;
   if (!scales) return;
-  if (is_off(scales->depth, scales->depth_sigma)) {
+  if (scales->tells_depth() &&
+      std::abs(scales->depth) > std::max(least_depth, sigmas * scales->depth_sigma)) {
     session.add_trust_warning(
         fmt::format("by what the views see of each other's lines, points are {:.1f} % too {}: "
                     "check the scale of "
-                    "the depth maps or of the rig's baseline, and that the poses are in metres",
+                    "the depth maps or of the rig's baseline, that the poses are in metres, and "
+                    "that their scale "
+                    "does not drift",
                     100 * std::abs(scales->depth), scales->depth > 0 ? "near" : "far"));
   }
-  if (is_off(scales->across, scales->across_sigma)) {
+  if (scales->tells_across() &&
+      std::abs(scales->across) > std::max(least_across, sigmas * scales->across_sigma)) {
     session.add_trust_warning(
-        fmt::format("by what the views see of each other's lines, points lie {:.1f} % too {} the "
-                    "axis: check the "
-                    "focal length, and that images and depth maps are aligned",
-                    100 * std::abs(scales->across), scales->across > 0 ? "near" : "far from"));
+        fmt::format("by what the views see of each other's lines, the focal length seems {:.1f} % "
+                    "too {}: check "
+                    "it, and that images and depth maps are aligned",
+                    100 * std::abs(scales->across), scales->across > 0 ? "long" : "short"));
   }
 }
 
-/// Null where the views do not tell.
+/// Null where the views, or their motion, do not tell.
 Json scales_json(const std::optional<PointScales>& scales) {
   if (!scales) return nullptr;
-  return {{"depth", scales->depth},
-          {"depth_sigma", scales->depth_sigma},
-          {"across", scales->across},
-          {"across_sigma", scales->across_sigma},
+  const auto if_told = [](bool told, double value) { return told ? Json(value) : Json(); };
+  return {{"depth", if_told(scales->tells_depth(), scales->depth)},
+          {"depth_sigma", if_told(scales->tells_depth(), scales->depth_sigma)},
+          {"across", if_told(scales->tells_across(), scales->across)},
+          {"across_sigma", if_told(scales->tells_across(), scales->across_sigma)},
           {"joined_again", scales->joined_again}};
 }
 

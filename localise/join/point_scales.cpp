@@ -24,13 +24,18 @@ using Matrix42 = Eigen::Matrix<double, 4, 2>;
 
 constexpr std::size_t fewest_views = 10;
 
-/// D: of both ends across the line, by the scale of the whole point and by that of x and y.
+/// D: of both ends across the line, by the scale of the whole point and by that of x and y. At the
+/// points of the fitted line: at those measured, D has the noise of the residuals, and what motion
+/// does not tell seems to be told by it.
 Matrix42 by_scales(const SightedSegment& segment,
                    const Eigen::Matrix3d& R,
-                   const LineFrame& frame) {
+                   const LineFrame& frame,
+                   const Vector4d& off_m) {
   Matrix42 D;
   int row = 0;
-  for (const Vector3d& p : {segment.a_m, segment.b_m}) {
+  for (const Vector3d& measured_m : {segment.a_m, segment.b_m}) {
+    const Vector3d off = frame.axes.leftCols<2>() * off_m.segment<2>(row);
+    const Vector3d p = measured_m - R.transpose() * off;
     const Vector3d across(p.x(), p.y(), 0);
     D.block<2, 1>(row, 0) = frame.axes.leftCols<2>().transpose() * (R * p);
     D.block<2, 1>(row, 1) = frame.axes.leftCols<2>().transpose() * (R * across);
@@ -65,7 +70,7 @@ class Sums {
     for (std::size_t k = 0; k < sightings.size(); ++k) {
       const LineMeasurement m = measured(sightings[k], fit.frame);
       D.push_back(by_scales(segment_of(views, line.sightings[k]),
-                            views[sightings[k].view].T_world_camera.R, fit.frame));
+                            views[sightings[k].view].T_world_camera.R, fit.frame, m.across_m));
       weighted.emplace_back(m.covariance_m2.llt().solve(D.back()));
       pull += m.by_line().transpose() * weighted.back();
     }
@@ -148,27 +153,28 @@ PointScales joined_point_scales(std::span<const SegmentsOfView> views,
                                 const JoinOptions& options) {
   constexpr int most_joins = 5;
   constexpr double settled = 5e-4, first_factor = 4, most_factor = 8, most = 0.2;
-  Vector2d x = Vector2d::Zero(), left(first.depth, first.across),
-           gain = {first_factor, first_factor};
+  Vector2d x = Vector2d::Zero(), gain(first_factor, first_factor);
   PointScales at = first;
   for (int join = 0; join < most_joins; ++join) {
+    const Vector2d left(at.tells_depth() ? at.depth : 0, at.tells_across() ? at.across : 0);
     const Vector2d step = gain.cwiseProduct(left);
     if (step.cwiseAbs().maxCoeff() < settled) break;
     const Vector2d next = (x + step).cwiseMax(-most).cwiseMin(most);
     const std::vector<SegmentsOfView> scaled = scaled_views(views, next);
     const auto found = point_scales(scaled, join_lines(scaled, options), options);
     if (!found) break;
-    const Vector2d still(found->depth, found->across);
+    const Vector2d gone = left - Vector2d(found->depth, found->across);
     for (int i = 0; i < 2; ++i) {
-      const double gone = left[i] - still[i];
-      const double secant = std::abs(gone) > 0 ? (next[i] - x[i]) / gone : first_factor;
+      const double secant = std::abs(gone[i]) > 0 ? (next[i] - x[i]) / gone[i] : first_factor;
       gain[i] = secant > 1 && secant < most_factor ? secant : secant < 1 ? 1 : most_factor;
     }
     x = next;
-    left = still;
     at = *found;
   }
-  return {x[0] + at.depth, x[1] + at.across, at.depth_sigma, at.across_sigma, true};
+  at.depth += x[0];
+  at.across += x[1];
+  at.joined_again = true;
+  return at;
 }
 
 }  // namespace vernier::localise::internal

@@ -17,12 +17,18 @@ struct PointScales {
   double depth = 0, across = 0;
   double depth_sigma = 0, across_sigma = 0;
   bool joined_again = false;  ///< by joined_point_scales()
+
+  /// Whether the motion tells them: turning on the spot does not, nor a straight way ahead
+  /// `across`.
+  bool tells_depth() const { return depth_sigma < most_sigma; }
+  bool tells_across() const { return across_sigma < most_sigma; }
+  static constexpr double most_sigma = 0.02;
 };
 
 /// From the sightings of joined lines: the poses are metric, so that a line that is seen from near
 /// and from far tells whether its depths are in the poses' unit. With m_k and C_k the measurements
 /// of a sighting across its line and their covariance, H_k the line's, and D_k the derivative of
-/// m_k by both scales x (a Gauss–Newton step from x = 0, lines eliminated),
+/// m_k by both scales x at the fitted line (a Gauss–Newton step from x = 0, lines eliminated),
 ///
 ///     Λ = Σ_k Hᵀ C⁻¹ H,   E_k = D_k − H_k Λ⁻¹ Σ_j H_jᵀ C_j⁻¹ D_j
 ///     I = Σ E_kᵀ C_k⁻¹ E_k,   x = −I⁻¹ Σ E_kᵀ C_k⁻¹ r_k
@@ -37,8 +43,8 @@ std::optional<PointScales> point_scales(std::span<const SegmentsOfView> views,
                                         const JoinOptions& options);
 
 /// The scales at which point_scales() of the views so scaled, joined again, are zero: by secants
-/// from those of the views as they are, `first`, a few joins. The standard deviations are the last
-/// ones, taken along.
+/// from those of the views as they are, `first`, a few joins. What the motion does not tell stays
+/// as it is. The standard deviations are the last ones, taken along.
 PointScales joined_point_scales(std::span<const SegmentsOfView> views,
                                 const PointScales& first,
                                 const JoinOptions& options);

@@ -54,6 +54,8 @@ struct LinesFigures {
   std::vector<double> relative_sigmas;  ///< of a line's distance
   std::vector<double> down;             ///< part of the camera's y axis; 1: held level
   std::size_t segments = 0, placed = 0, below_floor = 0;
+  int with_steps = 0;                  ///< images whose depth map has steps …
+  double at_edges = 0, by_chance = 0;  ///< … and of them the sums of StepsAtEdges
 };
 
 /// The turn of a camera against a level one, from its pitch and roll.
@@ -125,6 +127,18 @@ void check_outputs(const LinesArguments& options, const std::vector<ImageFiles>&
   check_different("--segments", options.segments, options.output);
 }
 
+/// Steps of depth that do not lie at edges of the image are another image's. On a real walk 2.2
+/// times as many as by chance lie there, and of other frames' maps as many as by chance.
+void doubt_depth_maps(const LinesFigures& f, Session& session) {
+  constexpr int fewest = 3;
+  constexpr double least_ratio = 1.4;
+  if (f.with_steps < fewest || f.at_edges > least_ratio * f.by_chance) return;
+  session.add_trust_warning(fmt::format(
+      "{:.0f} % of the steps of depth lie at edges of the images, by chance it would be {:.0f} %: "
+      "check that the depth maps belong to these images and are aligned with them",
+      100 * f.at_edges / f.with_steps, 100 * f.by_chance / f.with_steps));
+}
+
 void report(const LinesArguments& options, const LinesFigures& f, Session& session) {
   const auto median = [](const std::vector<double>& v) {
     return v.empty() ? 0 : quantile(v, 0.5, QuantileKind::linear);
@@ -144,6 +158,7 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
   if (const std::string doubt = tilt_doubt(f.down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
+  doubt_depth_maps(f, session);
   constexpr double most_below = 0.2;  // of all: a stairwell shows some
   if (static_cast<double>(f.below_floor) > most_below * static_cast<double>(f.placed)) {
     session.add_trust_warning(fmt::format(
@@ -198,6 +213,12 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
       figures.relative_sigmas.push_back(s.relative_sigma);
     }
     figures.below_floor += below_floor(segments, all[i]);
+    constexpr int enough_steps = 50;
+    if (segments.steps.steps >= enough_steps) {
+      ++figures.with_steps;
+      figures.at_edges += segments.steps.at_edges;
+      figures.by_chance += segments.steps.by_chance;
+    }
     figures.down.push_back(all[i].R_level_camera(1, 1));
     figures.lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);

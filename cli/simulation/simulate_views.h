@@ -10,7 +10,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/floor_poses.h"
 #include "localise/place.h"
-#include "localise/views/depth_view.h"
+#include "localise/views/edge_depths.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"

@@ -9,6 +9,8 @@
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "localise/place.h"
+#include "localise/views/depth_steps.h"
+#include "localise/views/edge_depths.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/depth_image.h"
 #include "stereo/reconstruction/space_segments.h"
@@ -16,36 +18,22 @@
 
 namespace vernier::localise::internal {
 
-/// The standard deviation of a depth z is √(floor² + (per_m2 z²)²). The first part is noise, new at
-/// each pixel; the second is common to the pixels of an edge. Its default is that of structured
-/// light (Khoshelham and Oude Elberink, "Accuracy and resolution of Kinect depth data", Sensors 12,
-/// 2012: 1.4e-3).
-struct DepthNoise {
-  double floor_m = 0.01;
-  double per_m2 = 1.5e-3;  ///< of z², 1/m
-};
-
 struct DepthViewOptions {
   DepthNoise noise;
   PlaceLineOptions lines;
 };
 
 /// Segments of an image, those with depths in space: metres, in the camera's frame, with the
-/// covariance of both ends (independent_m2). `image[i]` is that of segment i.
+/// covariance of both ends (independent_m2). `image[i]` is that of segment i. `steps` tells whether
+/// the depth map is the image's.
 struct DepthSegments {
   std::vector<stereo::internal::MeasuredSegment> in_space;
   std::vector<stereo::ImageSegment> image;
+  StepsAtEdges steps;
 };
 
-/// Straight edges of an image with the depths of an aligned map. At an edge point the depth of
-/// either side is that of a plane through the pixels at 1 to 5 px across, whose inverse depth is
-/// linear in the image, at the edge; their median where they lie on none. The pixels end at the
-/// next edge if three are left before it, and the nearest, which may hold both sides, is left out
-/// where the others lie on a plane without it. Where both sides differ by more than 3 standard
-/// deviations and 2 %, the edge is that of the nearer surface, which hides the other one; else it
-/// is their mean. Where one side is not known, the other counts only if what is known beyond it, up
-/// to 40 px, is not nearer; if nothing is, the edge has no depth. A straight line in space has an
-/// inverse depth that is linear along its image, so the rest is as for disparities
+/// Straight edges of an image with the depths of an aligned map (edge_depths.h). A straight line in
+/// space has an inverse depth that is linear along its image, so the rest is as for disparities
 /// (stereo/reconstruction/segment_disparity.h), with d = f / z: consensus along the edge, parts
 /// where surfaces change, covariance. Depth errors are not correlated with the place of the edge.
 /// Throws Error unless the camera is a pinhole and both images have its size.

@@ -27,12 +27,12 @@ using vernier::internal::TextLines;
 namespace {
 
 constexpr std::size_t most_segments = 100'000;
+constexpr double farthest_m = 1000, largest_m2 = 1e6;
 
 Json numbers(const auto& v) { return Json(std::vector<double>(v.begin(), v.end())); }
 
 Eigen::Vector3d point(const JsonNode& node) {
   const Eigen::Vector3d p = node.vector3();
-  constexpr double farthest_m = 1000;
   if (!(p.cwiseAbs().maxCoeff() <= farthest_m)) {
     throw Error(node.place(), "is farther than 1,000 m", "give metres");
   }
@@ -42,11 +42,12 @@ Eigen::Vector3d point(const JsonNode& node) {
 Eigen::Matrix<double, 6, 6> covariance(const JsonNode& node) {
   const Eigen::MatrixXd C = node.matrix();
   if (C.rows() != 6) throw Error(node.place(), "is not 6 x 6", "give that of both ends");
-  constexpr double largest_m2 = 1e6;
-  if (!(C.cwiseAbs().maxCoeff() <= largest_m2) || !(C.diagonal().minCoeff() >= 0) ||
-      (C - C.transpose()).cwiseAbs().maxCoeff() > 1e-6 * C.cwiseAbs().maxCoeff()) {
-    throw Error(node.place(), "is not symmetric, or has a variance that is not from 0 to 1e6 m2",
-                "correct it");
+  if (!(C.cwiseAbs().maxCoeff() <= largest_m2) || !(C.diagonal().minCoeff() >= 0)) {
+    throw Error(node.place(), "has a variance that is not from 0 to 1e6 m2",
+                "correct it, or leave the segment out");
+  }
+  if ((C - C.transpose()).cwiseAbs().maxCoeff() > 1e-6 * C.cwiseAbs().maxCoeff()) {
+    throw Error(node.place(), "is not symmetric", "correct it");
   }
   if (!is_semidefinite(C)) {
     throw Error(node.place(), "is not positive semidefinite", "correct it");
@@ -81,6 +82,13 @@ ImageSegmentInSpace parse_segment(const JsonNode& node) {
   return segment;
 }
 
+/// What nearly has no disparity lies kilometres off.
+bool can_be_read(const stereo::internal::MeasuredSegment& s) {
+  return s.segment.a_m.cwiseAbs().maxCoeff() <= farthest_m &&
+         s.segment.b_m.cwiseAbs().maxCoeff() <= farthest_m &&
+         s.independent_m2.cwiseAbs().maxCoeff() <= largest_m2;
+}
+
 SegmentsOfImage parse_image(const JsonNode& node) {
   SegmentsOfImage image;
   image.image = node.at("image").text();
@@ -99,7 +107,7 @@ SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segme
   SegmentsOfImage result{image, {}};
   for (std::size_t i = 0; i < segments.image.size(); ++i) {
     const stereo::internal::MeasuredSegment& s = segments.in_space[i];
-    if (s.status != stereo::internal::SegmentStatus::placed) continue;
+    if (s.status != stereo::internal::SegmentStatus::placed || !can_be_read(s)) continue;
     result.segments.push_back(
         {segments.image[i], {s.segment.a_m, s.segment.b_m, s.independent_m2}, s.segment.reliable});
   }

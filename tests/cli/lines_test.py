@@ -137,6 +137,16 @@ class Lines(verb_calls.ProgramCase):
             self.assertIn(doubt, run.stderr)
         self.refused(*CALL, '--height-m', '0', '-o', 'no.jsonl', says='above the floor')
 
+    def test_depth_maps_of_other_images_are_doubted(self):
+        words = ['lines', '--image', 'walk*.pgm', '--rig', 'K.txt', '-o', 'out.jsonl']
+        self.assertEqual(self.run_program(*words, '--depth', 'far*.png').returncode, 0)
+        for i in range(3):  # seen in a mirror
+            depths = [row[::-1] for row in seen(0.2 * i, 0.05 * i)[1]]
+            (self.folder / f'turned{i}.png').write_bytes(verb_calls.png16(depths))
+        run = self.run_program(*words, '--depth', 'turned*.png')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('check that the depth maps belong to these images', run.stderr)
+
     def test_bad_input(self):
         out = ['-o', 'out.jsonl']
         self.refused(*CALL, *out, '--poses', 'poses.csv', '--height-m', '-1', says='above the floor')

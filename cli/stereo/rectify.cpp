@@ -28,6 +28,7 @@
 #include "cli/program/picture.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/stereo/side_by_side.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -296,6 +297,7 @@ void run(RectifyArguments options, Session& session) {
   inputs.insert(inputs.end(), {options.left, options.right});
   const Rig& rig = file.estimate.rig;
   require_pair(rig, options.rig, options.rig);
+  require_side_by_side(rig, options.rig);
   const RectifiedGeometry wanted =
       with_errors_of(options.rig, [&] { return rectified_geometry(rig, options.geometry); });
   const auto [left, right] =

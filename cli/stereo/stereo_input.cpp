@@ -15,6 +15,7 @@
 #include "cli/program/camera_images.h"
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
+#include "cli/stereo/side_by_side.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matching/matcher_input.h"
 #include "stereo/rectification.h"
@@ -48,6 +49,7 @@ void check(const StereoInputOptions& o) {
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Rig& rig = input.estimate->rig;
   require_pair(rig, o.rig, o.rig);
+  require_side_by_side(rig, o.rig);
   const RectifiedGeometry geometry = with_errors_of(o.rig, [&] { return rectified_geometry(rig); });
   const RectifiedPair raw = read_camera_images(rig, o.rig, o.left, o.right, session);
   RectifiedImages images = rectified_images(rig, geometry, raw.left, raw.right, o.threads);

@@ -142,6 +142,26 @@ class Match(Case):
         self.assertIn('left corners were matched; check that the prior belongs to',
                       done.stderr + done.stdout)
 
+    def test_cameras_that_are_turned_or_of_another_scale_are_named(self):
+        self.image('left1.pgm', 0, 1)
+        self.image('right1.pgm', 0, 2)
+
+        def with_value(rig, key, value):
+            rig['parameters'][rig['parameter_names'].index('right.' + key)] = value
+
+        def turned(rig):
+            rig['cameras'][1]['from_first']['rotation_rad'][2] = 1.5
+            with_value(rig, 'wz_rad', 1.5)
+
+        def larger(rig):
+            rig['cameras'][1]['parameters']['f_px'] = 1000
+            with_value(rig, 'f_px', 1000)
+        for change, cause in ((turned, 'the right image turned by 86 degrees against the left one'),
+                              (larger, 'things are 2 times as large in the right image')):
+            done = cli_test.vernier(*self.arguments(change=change))
+            self.assertIn(done.returncode, (2, 3))
+            self.assertIn(cause, done.stderr)
+
     def test_a_prior_without_covariance(self):
         self.pairs()
 

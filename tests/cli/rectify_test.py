@@ -191,6 +191,13 @@ class Rectify(CalibratedCase):
         self.complains(*self.arguments(rig=self.changed_rig('larger.json', larger)), '-q',
                        of='right01.jpg: image size 640x480 differs from camera "right"',
                        leaves=[out])
+
+        def behind(rig):
+            rig['cameras'][1]['from_first'] = {'rotation_rad': [0, 0, 0], 'translation_m': [0.02, 0, -0.3]}
+            for key in ('parameters', 'parameter_names', 'covariance', 'calibration', 'evidence'):
+                rig.pop(key, None)
+        self.complains(*self.arguments(rig=self.changed_rig('behind.json', behind)), '-q',
+                       of='one camera is behind the other', leaves=[out])
         self.complains(*self.arguments(right=IMAGES / 'left01.jpg'), '-q', of='same image',
                        leaves=[out])
         self.complains(*self.arguments(left=self.folder / 'none.png'), '-q', of='none.png',

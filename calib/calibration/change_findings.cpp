@@ -24,7 +24,9 @@ namespace {
 
 constexpr double least_split_share = 0.25, least_scatter_share = 0.5, least_bend_share = 0.5;
 constexpr double least_f = 20;
-constexpr double one_change = 0.65;  // of what a change in every frame explains
+// of what a change in every frame explains; where that is in the cost, few frames come near by
+// chance
+constexpr double one_change = 0.65, one_change_beside_motion = 0.95;
 
 std::string camera_words(const Rig& rig, int camera) {
   return fmt::format("camera {} (\"{}\")", camera,
@@ -83,7 +85,10 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
     if (!best || s.share > best->share) best = &s;
   }
   if (split && split->share >= least_split_share &&
-      (!scatter || split->share >= one_change * scatter->share)) {
+      (!scatter ||
+       split->share >= (motion_is_estimated && split->kept == Kept::pose ? one_change_beside_motion
+                                                                         : one_change) *
+                           scatter->share)) {
     return split_finding(*split, state.rig);
   }
   if (!scatter || scatter->share < least_scatter_share) return {};

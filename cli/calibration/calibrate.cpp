@@ -78,11 +78,11 @@ void report_warnings(const RigEstimate& estimate, Session& session) {
   for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
 }
 
-/// Root mean square residuals of each camera; empty where a shape of the board is estimated, which
-/// the evidence does not hold.
+/// Root mean square residuals of each camera; empty where a shape or motion of the board is
+/// estimated, which the evidence does not hold: all motion would be the second camera's.
 std::vector<double> rms_of_cameras(const RigEstimate& estimate) {
   std::vector<double> rms_px;
-  if (estimate.calibration->effects && !estimate.calibration->effects->shape_m.empty()) return {};
+  if (estimate.calibration->effects) return {};
   for (std::size_t c = 0; c < estimate.rig.cameras.size(); ++c) {
     double squares = 0, corners = 0;
     for (const CornerResidual& at : residuals_of_camera(estimate, static_cast<int>(c))) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/noise/camera_scales.h"
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
@@ -88,7 +89,8 @@ CheckSection check_corner_noise(const RigEstimate& estimate,
                                 const Session& session) {
   session.info("estimating the components of the corner noise");
   const CornerNoiseEstimate found = estimate_corner_noise(
-      estimate, {.motion = stand == BoardStand::hand_held, .baseline_motion = true});
+      estimate, {.motion = stand == BoardStand::hand_held, .baseline_motion = true},
+      {.shape = true}, CameraNoise::of_each);
   CheckSection part;
   part.json = noise_json(found, estimate.rig);
   part.text = noise_text(found, estimate.rig);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -65,14 +66,13 @@ class Sums {
     std::vector<const WorldSighting*> all;
     for (const WorldSighting& s : sightings) all.push_back(&s);
     const FittedLine fit = fitted(all);
-    std::vector<Matrix42> weighted, D;  // C⁻¹ D
+    std::vector<Matrix42> D;
     Matrix42 pull = Matrix42::Zero();
     for (std::size_t k = 0; k < sightings.size(); ++k) {
       const LineMeasurement m = measured(sightings[k], fit.frame);
       D.push_back(by_scales(segment_of(views, line.sightings[k]),
                             views[sightings[k].view].T_world_camera.R, fit.frame, m.across_m));
-      weighted.emplace_back(m.covariance_m2.llt().solve(D.back()));
-      pull += m.by_line().transpose() * weighted.back();
+      pull += m.by_line().transpose() * m.covariance_m2.llt().solve(D.back());
     }
     const Matrix42 moves = fit.covariance * pull;  // of the line by the scales
     for (std::size_t k = 0; k < sightings.size(); ++k) {
@@ -166,7 +166,7 @@ PointScales joined_point_scales(std::span<const SegmentsOfView> views,
     const Vector2d gone = left - Vector2d(found->depth, found->across);
     for (int i = 0; i < 2; ++i) {
       const double secant = std::abs(gone[i]) > 0 ? (next[i] - x[i]) / gone[i] : first_factor;
-      gain[i] = secant > 1 && secant < most_factor ? secant : secant < 1 ? 1 : most_factor;
+      gain[i] = std::clamp(secant, 1.0, most_factor);
     }
     x = next;
     at = *found;

@@ -18,7 +18,7 @@ using stereo::internal::DepthImage;
 namespace {
 
 constexpr int near_px = 2;
-constexpr float step_share = 0.1F;  // of the nearer depth
+constexpr float least_step = 0.1F;  // of the nearer depth
 
 std::vector<bool> near_edges(const std::vector<EdgePoint>& edges, int width_px, int height_px) {
   std::vector<bool> is_near(static_cast<std::size_t>(width_px) * height_px, false);
@@ -35,7 +35,7 @@ std::vector<bool> near_edges(const std::vector<EdgePoint>& edges, int width_px, 
 }
 
 bool is_step(float a_m, float b_m) {
-  return a_m > 0 && b_m > 0 && std::abs(a_m - b_m) > step_share * std::min(a_m, b_m);
+  return a_m > 0 && b_m > 0 && std::abs(a_m - b_m) > least_step * std::min(a_m, b_m);
 }
 
 }  // namespace

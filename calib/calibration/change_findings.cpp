@@ -84,12 +84,11 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
     const FrameScatter*& best = s.is_split ? split : scatter;
     if (!best || s.share > best->share) best = &s;
   }
-  if (split && split->share >= least_split_share &&
-      (!scatter ||
-       split->share >= (motion_is_estimated && split->kept == Kept::pose ? one_change_beside_motion
-                                                                         : one_change) *
-                           scatter->share)) {
-    return split_finding(*split, state.rig);
+  if (split && split->share >= least_split_share) {
+    const bool beside_motion = motion_is_estimated && split->kept == Kept::pose;
+    const double enough = beside_motion ? one_change_beside_motion : one_change;
+    if (!scatter || split->share >= enough * scatter->share)
+      return split_finding(*split, state.rig);
   }
   if (!scatter || scatter->share < least_scatter_share) return {};
   if (motion_is_estimated && scatter->kept == Kept::pose) return {};

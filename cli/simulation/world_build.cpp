@@ -176,6 +176,18 @@ void doubt_poses(const SeenViews& seen, const JoinedLines& joined, Session& sess
   }
 }
 
+/// Whether a scale is off by more than `least`, and by more than its scatter explains.
+bool is_off(bool told, double value, double sigma, double least) {
+  constexpr double sigmas = 5;
+  return told && std::abs(value) > std::max(least, sigmas * sigma);
+}
+bool depth_is_off(const PointScales& s, double least) {
+  return is_off(s.tells_depth(), s.depth, s.depth_sigma, least);
+}
+bool across_is_off(const PointScales& s, double least) {
+  return is_off(s.tells_across(), s.across, s.across_sigma, least);
+}
+
 /// Lines that are seen from near and from far tell a wrong scale of depths, and a wrong focal
 /// length: what is off by several standard deviations is found by joining again.
 std::optional<PointScales> tested_scales(const SeenViews& seen,
@@ -183,16 +195,11 @@ std::optional<PointScales> tested_scales(const SeenViews& seen,
                                          const JoinOptions& how,
                                          Session& session) {
   // what good views have (a walk with a real sensor: 0.0004 and 0.0016), with something to spare
-  constexpr double least_depth = 0.0015, least_across = 0.004, sigmas = 5;
+  constexpr double least_depth = 0.0015, least_across = 0.004;
   const std::optional<PointScales> first = point_scales(seen.views, joined, how);
-  if (!first) return first;
-  const bool depth_is_off =
-      first->tells_depth() &&
-      std::abs(first->depth) > std::max(least_depth, sigmas * first->depth_sigma);
-  const bool across_is_off =
-      first->tells_across() &&
-      std::abs(first->across) > std::max(least_across, sigmas * first->across_sigma);
-  if (!depth_is_off && !across_is_off) return first;
+  if (!first || (!depth_is_off(*first, least_depth) && !across_is_off(*first, least_across))) {
+    return first;
+  }
   session.info(
       "the lines of the views do not fit each other: looking for the scale of their points");
   return joined_point_scales(seen.views, *first, how);
@@ -200,25 +207,20 @@ std::optional<PointScales> tested_scales(const SeenViews& seen,
 
 void doubt_scales(const std::optional<PointScales>& scales, Session& session) {
   // beyond what a few views of a real walk show of themselves, 0.3 and 1.0 %
-  constexpr double least_depth = 0.01, least_across = 0.015, sigmas = 5;
+  constexpr double least_depth = 0.01, least_across = 0.015;
   if (!scales) return;
-  if (scales->tells_depth() &&
-      std::abs(scales->depth) > std::max(least_depth, sigmas * scales->depth_sigma)) {
-    session.add_trust_warning(
-        fmt::format("by what the views see of each other's lines, points are {:.1f} % too {}: "
-                    "check the scale of "
-                    "the depth maps or of the rig's baseline, that the poses are in metres, and "
-                    "that their scale "
-                    "does not drift",
-                    100 * std::abs(scales->depth), scales->depth > 0 ? "near" : "far"));
+  if (depth_is_off(*scales, least_depth)) {
+    session.add_trust_warning(fmt::format(
+        "by what the views see of each other's lines, points are {:.1f} % too {}: check the scale "
+        "of the depth maps or of the rig's baseline, that the poses are in metres, and that their "
+        "scale does not drift",
+        100 * std::abs(scales->depth), scales->depth > 0 ? "near" : "far"));
   }
-  if (scales->tells_across() &&
-      std::abs(scales->across) > std::max(least_across, sigmas * scales->across_sigma)) {
-    session.add_trust_warning(
-        fmt::format("by what the views see of each other's lines, the focal length seems {:.1f} % "
-                    "too {}: check "
-                    "it, and that images and depth maps are aligned",
-                    100 * std::abs(scales->across), scales->across > 0 ? "long" : "short"));
+  if (across_is_off(*scales, least_across)) {
+    session.add_trust_warning(fmt::format(
+        "by what the views see of each other's lines, the focal length seems {:.1f} % too {}: "
+        "check it, and that images and depth maps are aligned",
+        100 * std::abs(scales->across), scales->across > 0 ? "long" : "short"));
   }
 }
 

@@ -58,12 +58,6 @@ void check(const SightedSegment& s, const Pose& T_world_camera, std::size_t view
   }
 }
 
-/// Numerically singular ones, as of rays exactly known across, become definite: 0.01 mm.
-void make_definite(WorldSighting& sighting) {
-  constexpr double least_m = 1e-5;
-  sighting.covariance_m2.diagonal().array() += least_m * least_m;
-}
-
 JoinedLine joined(const GrowingLine& line,
                   std::span<const WorldSighting> all,
                   const JoinOptions& options) {

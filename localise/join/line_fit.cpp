@@ -41,6 +41,11 @@ WorldSighting in_world(const SightedSegment& segment, const Pose& T, const JoinO
   return sighting;
 }
 
+void make_definite(WorldSighting& sighting) {
+  constexpr double least_m = 1e-5;
+  sighting.covariance_m2.diagonal().array() += least_m * least_m;
+}
+
 double sigma_across(const WorldSighting& sighting) {
   const LineFrame frame = frame_of(sighting.a_m, sighting.b_m);
   double most = 0;

@@ -26,6 +26,9 @@ WorldSighting in_world(const SightedSegment& segment,
                        const Pose& T_world_camera,
                        const JoinOptions& options);
 
+/// Numerically singular covariances, as of rays exactly known across, become definite: 0.01 mm.
+void make_definite(WorldSighting& sighting);
+
 /// Larger standard deviation across itself of a segment's ends, metres.
 double sigma_across(const WorldSighting& sighting);
 

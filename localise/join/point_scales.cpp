@@ -61,27 +61,27 @@ class Sums {
     for (const LineSighting& s : line.sightings) {
       sightings.push_back(in_world(segment_of(views, s), views[s.view].T_world_camera, options));
       sightings.back().view = s.view;
-      sightings.back().covariance_m2.diagonal().array() += 1e-10;  // (0.01 mm)²
+      make_definite(sightings.back());
     }
     std::vector<const WorldSighting*> all;
     for (const WorldSighting& s : sightings) all.push_back(&s);
     const FittedLine fit = fitted(all);
+    std::vector<LineMeasurement> m;
     std::vector<Matrix42> D;
     Matrix42 pull = Matrix42::Zero();
     for (std::size_t k = 0; k < sightings.size(); ++k) {
-      const LineMeasurement m = measured(sightings[k], fit.frame);
+      m.push_back(measured(sightings[k], fit.frame));
       D.push_back(by_scales(segment_of(views, line.sightings[k]),
-                            views[sightings[k].view].T_world_camera.R, fit.frame, m.across_m));
-      pull += m.by_line().transpose() * m.covariance_m2.llt().solve(D.back());
+                            views[sightings[k].view].T_world_camera.R, fit.frame, m[k].across_m));
+      pull += m[k].by_line().transpose() * m[k].covariance_m2.llt().solve(D.back());
     }
     const Matrix42 moves = fit.covariance * pull;  // of the line by the scales
     for (std::size_t k = 0; k < sightings.size(); ++k) {
-      const LineMeasurement m = measured(sightings[k], fit.frame);
-      const Matrix42 E = D[k] - m.by_line() * moves;
-      const Eigen::LLT<Matrix4d> C(m.covariance_m2);
+      const Matrix42 E = D[k] - m[k].by_line() * moves;
+      const Eigen::LLT<Matrix4d> C(m[k].covariance_m2);
       OfView& view = of_views_[sightings[k].view];
       view.information += E.transpose() * C.solve(E);
-      view.score += E.transpose() * C.solve(m.across_m);
+      view.score += E.transpose() * C.solve(m[k].across_m);
     }
   }
 

@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -18,11 +15,9 @@
 #include "calib/base/ordered_parallel.h"
 #include "calib/base/output_files.h"
 #include "calib/calibration/pair_sides.h"
-#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/formats/pairs_file.h"
 #include "calib/pair_observations.h"
-#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/statistics/quantile.h"
@@ -160,44 +155,6 @@ void check_ambiguous_sides(const std::string& suspicion,
              "left camera, or use a prior that knows the rotation better"));
 }
 
-/// What keeps corners of such cameras from being matched, by how the right image of distant things
-/// is turned and enlarged against the left one; empty if little is.
-std::string unlike_images(const Rig& rig) {
-  constexpr double most_turn_deg = 15, most_scale = 1.3, step_px = 1;
-  const Camera& left = rig.cameras[0];
-  const Camera& right = rig.cameras[1];
-  const Eigen::Vector2d middle = 0.5 * left.size_px.cast<double>();
-  Eigen::Matrix2d A;  // of the right pixel by the left one
-  for (int k = 0; k < 2; ++k) {
-    Eigen::Vector2d ends[2];
-    for (int side = 0; side < 2; ++side) {
-      const Eigen::Vector2d px = middle + (2 * side - 1) * step_px * Eigen::Vector2d::Unit(k);
-      const auto ray = try_unproject(left, px);
-      if (!ray) return "";
-      const Eigen::Vector3d x = rig.T_camera_first[1].R * *ray;
-      if (!(x.z() > 0)) return "";
-      ends[side] = project(right, x);
-    }
-    A.col(k) = (ends[1] - ends[0]) / (2 * step_px);
-  }
-  const double turn_deg =
-      std::atan2(A(1, 0) - A(0, 1), A(0, 0) + A(1, 1)) * (180 / std::numbers::pi);
-  const double scale = std::sqrt(std::abs(A.determinant()));
-  if (std::abs(turn_deg) > most_turn_deg) {
-    return fmt::format(
-        "the prior has the right image turned by {:.0f} degrees against the left one, and corners "
-        "are compared without a turn: turn the images of one camera, and its calibration",
-        turn_deg);
-  }
-  if (scale > most_scale || scale < 1 / most_scale) {
-    return fmt::format(
-        "by the prior, things are {:.2g} times as large in the {} image, and corners are compared "
-        "at one scale: reduce these images by that, and the camera's size and focal length",
-        std::max(scale, 1 / scale), scale > 1 ? "right" : "left");
-  }
-  return "";
-}
-
 /// Throws Error if nothing matched; adds warnings for doubtful results. Returns what suggests that
 /// left and right are swapped, if anything does.
 std::string check_matches(const std::vector<ImageMatching>& all,
@@ -218,13 +175,9 @@ std::string check_matches(const std::vector<ImageMatching>& all,
   if (share >= min_matched) return suspicion;
   const std::string fault =
       fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
-  const std::string unlike = unlike_images(prior.rig);
   const std::string remedy =
-      !unlike.empty()
-          ? unlike
-          : "check that the prior belongs to these cameras, that its covariance is not too small, "
-            "that "
-            "the images are simultaneous, and that the scene is farther than --nearest-m";
+      "check that the prior belongs to these cameras, that its covariance is not too small, that "
+      "the images are simultaneous, and that the scene is farther than --nearest-m";
   if (sum.matches == 0) throw Error("match", fault, remedy);
   session.add_trust_warning(fault + "; " + remedy);
   return suspicion;

@@ -13,9 +13,12 @@ struct CornerMatch {
   Eigen::Vector2d right_px;  ///< matching position in the right image, by least squares matching
   /// Standard deviation of each of the four coordinates, taken as equal and independent, that
   /// reproduces the error across the epipolar curve: σ² = nᵀ C n / 2 + floor², C the covariance of
-  /// the alignment.
+  /// the alignment. With images reduced by r_l and r_r, 2 nᵀ (C / 2 + floor² 1) n / (r_l⁻² +
+  /// r_r⁻²).
   double sigma_px = 0;
   double score = 0;  ///< ZNCC of the aligned patches
+  /// ∂ right / ∂ left for a surface at constant depth, by the prior.
+  Eigen::Matrix2d right_by_left = Eigen::Matrix2d::Identity();
 };
 
 /// Options of match_corners.

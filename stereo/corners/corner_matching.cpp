@@ -10,11 +10,11 @@
 #include "calib/error.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/statistics/distributions.h"
+#include "stereo/corners/corner_image.h"
 #include "stereo/corners/corner_match.h"
 #include "stereo/corners/epipolar_band.h"
 #include "stereo/corners/harris_corners.h"
 #include "stereo/corners/match_support.h"
-#include "stereo/image/image_noise.h"
 #include "stereo/image/patch_alignment.h"
 
 namespace vernier::stereo::internal {
@@ -23,25 +23,24 @@ using namespace vernier::internal;
 
 namespace {
 
-using Patches = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor>;
-
-/// The patches of an image's corners with zero mean and unit norm, one per column.
-Patches patches(const CornerImage& image, int half) {
-  const int side = 2 * half + 1;
-  Patches all(side * side, static_cast<Eigen::Index>(image.corners.size()));
-  for (Eigen::Index c = 0; c < all.cols(); ++c) {
-    const Eigen::Vector2d p = image.corners[c].pixel_px;
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        all(j * side + i, c) =
-            static_cast<float>(grey_between(image.grey, p.x() + i - half, p.y() + j - half));
-      }
+/// The patch at a pixel of the reduced image, sampled at `offset_px` times the offsets of a square
+/// of 2 half + 1 pixels, with zero mean and unit norm.
+Eigen::VectorXf patch(const CornerImage& image,
+                      const Eigen::Vector2d& pixel_px,
+                      const Eigen::Matrix2d& offset_px,
+                      int half) {
+  Eigen::VectorXf grey((2 * half + 1) * (2 * half + 1));
+  Eigen::Index k = 0;
+  for (int j = -half; j <= half; ++j) {
+    for (int i = -half; i <= half; ++i) {
+      const Eigen::Vector2d at = pixel_px + offset_px * Eigen::Vector2d(i, j);
+      grey[k++] = static_cast<float>(grey_between(image.grey, at.x(), at.y()));
     }
-    all.col(c).array() -= all.col(c).mean();
-    const float length = all.col(c).norm();
-    if (length > 0) all.col(c) /= length;
   }
-  return all;
+  grey.array() -= grey.mean();
+  const float length = grey.norm();
+  if (length > 0) grey /= length;
+  return grey;
 }
 
 /// Corners by image tile.
@@ -79,7 +78,8 @@ class CornerGrid {
 
 struct Candidate {
   int right = 0;
-  Eigen::Vector2d direction;  ///< of the epipolar curve
+  Eigen::Vector2d direction;      ///< of the epipolar curve
+  Eigen::Matrix2d right_by_left;  ///< of a surface at its depth
   float score = 0;
 };
 
@@ -122,7 +122,8 @@ std::vector<Candidate> candidates_of(const std::vector<BandNode>& curve, RightSe
   std::vector<Candidate> candidates;
   for (const int right : seen) {
     const BandDistance& d = search.nearest[right];
-    if (d.mahalanobis2 <= search.gate[d.dof]) candidates.push_back({right, d.direction});
+    if (d.mahalanobis2 <= search.gate[d.dof])
+      candidates.push_back({right, d.direction, d.right_by_left});
     search.nearest[right] = {};
   }
   return candidates;
@@ -141,16 +142,41 @@ std::optional<Candidate> best_candidate(std::vector<Candidate>& candidates,
   return *best;
 }
 
-CornerMatch aligned_match(const Alignment& aligned,
-                          const Candidate& candidate,
-                          const CornerMatchingOptions& options) {
+/// ∂ right / ∂ left between the reduced images.
+Eigen::Matrix2d between_reduced(const CornerImage& left,
+                                const CornerImage& right,
+                                const Candidate& candidate) {
+  return candidate.right_by_left * (left.reduction / right.reduction);
+}
+
+/// Step 3 of match_corners().
+std::optional<CornerMatch> aligned(const CornerImage& left,
+                                   const CornerImage& right,
+                                   std::size_t own,
+                                   const Candidate& candidate,
+                                   const CornerMatchingOptions& options) {
   CornerMatch match;
+  match.left = static_cast<int>(own);
   match.right = candidate.right;
-  match.right_px = aligned.right_px;
-  match.score = aligned.score;
+  match.left_px = left.corners[own].pixel_px;
+  match.right_by_left = candidate.right_by_left;
+  const auto alignment =
+      align_patch(left.grey, right.grey, left.reduced(match.left_px),
+                  right.reduced(right.corners[candidate.right].pixel_px), candidate.direction,
+                  {.half_px = options.aligned_half_px,
+                   .max_shift_px = options.max_shift_px,
+                   .right_by_left = between_reduced(left, right, candidate),
+                   .noise_left = left.noise,
+                   .noise_right = right.noise});
+  if (!alignment || alignment->score < options.min_aligned_score) return std::nullopt;
+  match.right_px = right.raw(alignment->right_px);
+  match.score = alignment->score;
   const Eigen::Vector2d normal(-candidate.direction.y(), candidate.direction.x());
-  match.sigma_px = std::sqrt(0.5 * normal.dot(aligned.covariance_px2 * normal) +
-                             options.sigma_floor_px * options.sigma_floor_px);
+  const double variance_px2 = 0.5 * normal.dot(alignment->covariance_px2 * normal) +
+                              options.sigma_floor_px * options.sigma_floor_px;
+  match.sigma_px =
+      std::sqrt(variance_px2 * 2 /
+                (1 / (left.reduction * left.reduction) + 1 / (right.reduction * right.reduction)));
   return match;
 }
 
@@ -160,8 +186,6 @@ std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
                                                  const EpipolarBand& band,
                                                  const CornerMatchingOptions& options,
                                                  long& count) {
-  const Patches left_patches = patches(left, options.patch_half_px);
-  const Patches right_patches = patches(right, options.patch_half_px);
   RightSearch search(right.corners, options.gate_probability);
   std::vector<std::optional<Candidate>> chosen(left.corners.size());
   std::vector<float> best_of_right(right.corners.size(), -1);
@@ -169,8 +193,12 @@ std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
     const ImageCorner& corner = left.corners[i];
     auto candidates = candidates_of(band.curve({corner.pixel_px, corner.covariance_px2}), search);
     count += static_cast<long>(candidates.size());
+    if (candidates.empty()) continue;
+    const Eigen::VectorXf own = patch(left, left.reduced(corner.pixel_px),
+                                      Eigen::Matrix2d::Identity(), options.patch_half_px);
     for (Candidate& c : candidates) {
-      c.score = left_patches.col(static_cast<Eigen::Index>(i)).dot(right_patches.col(c.right));
+      c.score = own.dot(patch(right, right.reduced(right.corners[c.right].pixel_px),
+                              between_reduced(left, right, c), options.patch_half_px));
       best_of_right[c.right] = std::max(best_of_right[c.right], c.score);
     }
     chosen[i] = best_candidate(candidates, options);
@@ -193,14 +221,6 @@ void check(const CornerMatchingOptions& options) {
 
 }  // namespace
 
-CornerImage corner_image(const cv::Mat& grey, const HarrisOptions& options) {
-  CornerImage image;
-  image.noise = image_noise(grey);
-  image.corners = harris_corners(grey, image.noise, options);
-  grey.convertTo(image.grey, CV_32F);
-  return image;
-}
-
 std::vector<CornerMatch> match_corners(const CornerImage& left,
                                        const CornerImage& right,
                                        const EpipolarBand& band,
@@ -213,17 +233,7 @@ std::vector<CornerMatch> match_corners(const CornerImage& left,
   std::vector<CornerMatch> matches;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!chosen[i]) continue;
-    const Eigen::Vector2d left_px = left.corners[i].pixel_px;
-    const auto aligned = align_patch(left.grey, right.grey, left_px,
-                                     right.corners[chosen[i]->right].pixel_px, chosen[i]->direction,
-                                     {.half_px = options.aligned_half_px,
-                                      .max_shift_px = options.max_shift_px,
-                                      .noise_left = left.noise,
-                                      .noise_right = right.noise});
-    if (!aligned || aligned->score < options.min_aligned_score) continue;
-    matches.push_back(aligned_match(*aligned, *chosen[i], options));
-    matches.back().left = static_cast<int>(i);
-    matches.back().left_px = left_px;
+    if (const auto match = aligned(left, right, i, *chosen[i], options)) matches.push_back(*match);
   }
   return supported(matches, options);
 }

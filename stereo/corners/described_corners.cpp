@@ -4,16 +4,15 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/core.hpp>
 #include <vector>
 
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/rig.h"
+#include "stereo/corners/corner_image.h"
 #include "stereo/corners/corner_match.h"
 #include "stereo/corners/corner_matching.h"
 #include "stereo/corners/epipolar_band.h"
-#include "stereo/corners/harris_corners.h"
 #include "stereo/corners/patch_descriptor.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -30,12 +29,6 @@ void check_same_size(const GreyLevels& image, const Camera& camera) {
               "give the rig that took the images");
 }
 
-CornerImage corners_in(const GreyLevels& image, const HarrisOptions& options) {
-  cv::Mat grey;
-  matrix_of(image).convertTo(grey, CV_8U);
-  return corner_image(grey, options);
-}
-
 }  // namespace
 
 std::vector<DescribedCorner> described_corners(const Rig& rig,
@@ -46,14 +39,12 @@ std::vector<DescribedCorner> described_corners(const Rig& rig,
   const EpipolarBand band(rig, covariance, {.nearest_m = options.nearest_m});
   check_same_size(left, rig.cameras[0]);
   check_same_size(right, rig.cameras[1]);
-  HarrisOptions harris{.count = options.corners, .cells = options.cells};
-  const CornerImage in_left = corners_in(left, harris);
-  harris.count += harris.count / 2;  // the partner may be among the weakest
-  const CornerImage in_right = corners_in(right, harris);
+  const auto [in_left, in_right] = corner_images(
+      bytes_of(left), bytes_of(right), rig, {.count = options.corners, .cells = options.cells});
   const PatchDescriptors descriptors(in_left.grey);
   std::vector<DescribedCorner> corners;
   for (const CornerMatch& match : match_corners(in_left, in_right, band)) {
-    if (auto descriptor = descriptors.at(match.left_px)) {
+    if (auto descriptor = descriptors.at(in_left.reduced(match.left_px))) {
       corners.push_back({match, std::move(*descriptor)});
     }
   }

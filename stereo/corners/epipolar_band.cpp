@@ -74,10 +74,10 @@ std::optional<BandNode> EpipolarBand::node(const Ray& ray, double inverse_depth)
   by_rig.middleCols(intrinsics_index(rig_, 1), J.camera.cols()) = J.camera;
   by_rig.middleCols<3>(pose_index(rig_, 1)) = -J.point * hat(turned);
   by_rig.middleCols<3>(pose_index(rig_, 1) + 3) = inverse_depth * J.point;
-  const Eigen::Matrix2d by_pixel = by_ray * ray.by_pixel;
+  node.right_by_left = by_ray * ray.by_pixel;
   const double floor = options_.corner_sigma_px * options_.corner_sigma_px;
   node.covariance_px2 = by_rig * covariance_ * by_rig.transpose() +
-                        by_pixel * ray.covariance_px2 * by_pixel.transpose() +
+                        node.right_by_left * ray.covariance_px2 * node.right_by_left.transpose() +
                         floor * Eigen::Matrix2d::Identity();
   return node;
 }
@@ -168,6 +168,7 @@ BandDistance distance_to_step(const std::vector<BandNode>& curve,
   distance.mahalanobis2 = off.dot(information * off);
   distance.dof = beyond ? 2 : 1;
   distance.inverse_depth = a.inverse_depth + t * (b.inverse_depth - a.inverse_depth);
+  distance.right_by_left = a.right_by_left + t * (b.right_by_left - a.right_by_left);
   if (step.norm() > 0) distance.direction = step.normalized();
   return distance;
 }

@@ -24,6 +24,8 @@ struct BandNode {
   double inverse_depth = 0;  ///< 1 / z in the left camera frame, 1 / m
   Eigen::Vector2d pixel_px;  ///< q(ρ) in the raw (distorted) right image
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  ///< of q(ρ)
+  /// ∂q / ∂p at this ρ: how a surface at constant depth changes from the left to the right image.
+  Eigen::Matrix2d right_by_left = Eigen::Matrix2d::Identity();
   bool follows = false;  ///< whether the curve is connected to the previous node
 };
 
@@ -34,6 +36,7 @@ struct BandDistance {
   int dof = 1;
   double inverse_depth = 0;
   Eigen::Vector2d direction{1, 0};  ///< tangent of the curve there, unit, towards smaller depths
+  Eigen::Matrix2d right_by_left = Eigen::Matrix2d::Identity();  ///< ∂q / ∂p there
 };
 
 struct BandOptions {

@@ -13,10 +13,10 @@
 #include "calib/error.h"
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
+#include "stereo/corners/corner_image.h"
 #include "stereo/corners/corner_match.h"
 #include "stereo/corners/corner_matching.h"
 #include "stereo/corners/epipolar_band.h"
-#include "stereo/corners/harris_corners.h"
 
 namespace vernier::stereo::internal {
 
@@ -97,12 +97,10 @@ ImageMatching match_images(const ImageFiles& files,
                 "use the rig of the two cameras that took the images");
   }
   const EpipolarBand band(prior.rig, covariance.matrix, options.band);
-  HarrisOptions harris{.count = options.corners, .cells = options.cells};
-  const CornerImage left =
-      corner_image(read_image(files.left, prior.rig.cameras[0], prior_place), harris);
-  harris.count += harris.count / 2;
-  const CornerImage right =
-      corner_image(read_image(files.right, prior.rig.cameras[1], prior_place), harris);
+  const auto [left, right] =
+      corner_images(read_image(files.left, prior.rig.cameras[0], prior_place),
+                    read_image(files.right, prior.rig.cameras[1], prior_place), prior.rig,
+                    {.count = options.corners, .cells = options.cells});
   ImageMatching result;
   result.files = files;
   result.corners_left = static_cast<int>(left.corners.size());

@@ -21,12 +21,13 @@ int agreeing(const std::vector<CornerMatch>& matches,
     if (i != own) near.emplace_back((matches[i].left_px - matches[own].left_px).norm(), i);
   }
   std::partial_sort(near.begin(), near.begin() + options.neighbours, near.end());
-  const Eigen::Vector2d displacement = matches[own].right_px - matches[own].left_px;
+  const CornerMatch& match = matches[own];
   return static_cast<int>(
       std::count_if(near.begin(), near.begin() + options.neighbours, [&](const auto& neighbour) {
         const CornerMatch& other = matches[neighbour.second];
-        const double apart = (other.right_px - other.left_px - displacement).norm();
-        return apart <= std::max(always_allowed_px, options.support_slope * neighbour.first);
+        const Eigen::Vector2d carried = match.right_by_left * (other.left_px - match.left_px);
+        const double apart = (other.right_px - match.right_px - carried).norm();
+        return apart <= std::max(always_allowed_px, options.support_slope * carried.norm());
       }));
 }
 

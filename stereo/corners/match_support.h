@@ -8,9 +8,10 @@
 
 namespace vernier::stereo::internal {
 
-/// Matches consistent with at least `support` of their nearest neighbours: displacements right −
-/// left differ by at most a pixel or `support_slope` times the distance in the left image, a limit
-/// on the disparity gradient (Pollard, Mayhew and Frisby 1985). Returns all matches if there are no
+/// Matches consistent with at least `support` of their nearest neighbours: the offset
+/// between two right pixels differs from that of the left ones, carried over by the prior's
+/// derivative, by at most a pixel or `support_slope` times that offset, a limit on the disparity
+/// gradient (Pollard, Mayhew and Frisby 1985). Returns all matches if there are no
 /// more than `neighbours`.
 std::vector<CornerMatch> supported(const std::vector<CornerMatch>& matches,
                                    const CornerMatchingOptions& options);

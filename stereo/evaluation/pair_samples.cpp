@@ -11,6 +11,7 @@
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "stereo/corners/corner_image.h"
 #include "stereo/corners/corner_matching.h"
 #include "stereo/corners/epipolar_band.h"
 #include "stereo/corners/harris_corners.h"
@@ -64,12 +65,6 @@ AssumedRig assumed_rig(int width_px, int height_px, const DisparityRange& range)
   return assumed;
 }
 
-CornerImage corners_of(const GreyLevels& image, int count) {
-  cv::Mat grey;
-  matrix_of(image).convertTo(grey, CV_8U);
-  return corner_image(grey, {.count = count});
-}
-
 std::vector<Eigen::Vector2d> places(const std::vector<ImageCorner>& corners) {
   std::vector<Eigen::Vector2d> all;
   all.reserve(corners.size());
@@ -82,11 +77,11 @@ void sample_corners(const RectifiedPair& pair,
                     const DisparityRange& range,
                     const PairSamplesOptions& options,
                     PairSamples& samples) {
-  const CornerImage left = corners_of(pair.left, options.corners);
-  const CornerImage right = corners_of(pair.right, options.corners + options.corners / 2);
+  const AssumedRig assumed = assumed_rig(pair.left.width_px, pair.left.height_px, range);
+  const auto [left, right] = corner_images(bytes_of(pair.left), bytes_of(pair.right), assumed.rig,
+                                           {.count = options.corners});
   samples.corners =
       corner_repeatabilities(places(left.corners), places(right.corners), truth, options.repeat);
-  const AssumedRig assumed = assumed_rig(pair.left.width_px, pair.left.height_px, range);
   const int parameters = parameter_count(assumed.rig);
   const EpipolarBand band(assumed.rig, Eigen::MatrixXd::Zero(parameters, parameters),
                           {.nearest_m = assumed.nearest_m});

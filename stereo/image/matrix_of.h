@@ -13,4 +13,11 @@ inline cv::Mat matrix_of(const GreyLevels& image) {
   return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
 }
 
+/// Rounded to 8 bits.
+inline cv::Mat bytes_of(const GreyLevels& image) {
+  cv::Mat bytes;
+  matrix_of(image).convertTo(bytes, CV_8U);
+  return bytes;
+}
+
 }  // namespace vernier::stereo::internal

@@ -169,19 +169,23 @@ std::optional<Alignment> align_patch(const cv::Mat& left,
                                      const Eigen::Vector2d& right_px,
                                      const Eigen::Vector2d& direction,
                                      const AlignmentOptions& options) {
-  const Template patch = make_template(left, left_px, direction, options.half_px);
+  const Eigen::Matrix2d left_by_right = options.right_by_left.inverse();
+  const Eigen::Vector2d in_left = left_by_right * direction;
+  const Template patch = make_template(left, left_px, in_left, options.half_px);
   if (!patch.holds) return std::nullopt;
   Warp warp;
+  warp.D = options.right_by_left;
   warp.q = right_px;
   for (int step = 0; step < max_steps; ++step) {
     const Eigen::VectorXd values = sampled(right, patch, warp);
     const Vector6d fit = patch.inverse * (patch.J.transpose() * patch.weight.cwiseProduct(values));
     if (!(fit[4] > 1 / max_gain && fit[4] < max_gain)) return std::nullopt;
-    const Warp next = composed(warp, fit, direction);
+    const Warp next = composed(warp, fit, in_left);
     const bool settled = (next.q - warp.q).norm() < min_step_px;
     warp = next;
     if (!((warp.q - right_px).norm() <= options.max_shift_px)) return std::nullopt;
-    if ((warp.D - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() > max_stretch) {
+    if ((left_by_right * warp.D - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() >
+        max_stretch) {
       return std::nullopt;
     }
     if (settled) {

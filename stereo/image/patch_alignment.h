@@ -12,6 +12,8 @@ struct AlignmentOptions {
   /// Patches of 2 half + 1 pixels, weighted by a Gaussian with σ of half their half-size.
   int half_px = 7;
   double max_shift_px = 1;  ///< maximum distance from the start
+  /// A, by which an offset in the left image becomes one in the right image before the stretch.
+  Eigen::Matrix2d right_by_left = Eigen::Matrix2d::Identity();
   /// Minimum noise of the images, standard deviation, grey levels.
   double noise_left = 0, noise_right = 0;
 };
@@ -25,14 +27,14 @@ struct Alignment {
 /// Least squares matching (Förstner 1982; Grün 1985): finds the right pixel q at which the left
 /// patch I appears in the right image K,
 ///
-///     K(q + D i) = α I(p + i) + β,   D = 1 + d (s, h),   |i| <= half
+///     K(q + D i) = α I(p + i) + β,   D = A + d (s, h),   |i| <= half
 ///
-/// with shift, gain, offset, and stretch s and shear h along `direction`, which is how a slanted
-/// plane changes the disparity. Iterations are inverse compositional (Baker and Matthews 2004):
-/// gradients of the left patch only. Covariance s²/α² N⁻¹ (Jᵀ W² J) N⁻¹ with s² the residuals'
-/// weighted mean square, at least that of the image noise; errors from non-planar surfaces are not
-/// included. Returns nullopt if it does not converge, moves too far, or needs a gain beyond 3 or a
-/// stretch beyond 0.6. Images are grey levels as CV_32F.
+/// with shift, gain, offset, and stretch s and shear h along d, the `direction` in the right image,
+/// which is how a slanted plane changes the disparity. Iterations are inverse compositional (Baker
+/// and Matthews 2004): gradients of the left patch only. Covariance s²/α² N⁻¹ (Jᵀ W² J) N⁻¹ with s²
+/// the residuals' weighted mean square, at least that of the image noise; errors from non-planar
+/// surfaces are not included. Returns nullopt if it does not converge, moves too far, or needs a
+/// gain beyond 3 or a stretch beyond 0.6. Images are grey levels as CV_32F.
 std::optional<Alignment> align_patch(const cv::Mat& left,
                                      const cv::Mat& right,
                                      const Eigen::Vector2d& left_px,

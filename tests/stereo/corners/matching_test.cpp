@@ -2,14 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/statistics/random.h"
 #include "calib/triangulation.h"
+#include "stereo/corners/corner_image.h"
 #include "stereo/corners/corner_match.h"
 #include "stereo/corners/corner_matching.h"
 #include "stereo/corners/epipolar_band.h"
@@ -27,20 +36,30 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-/// The test rig at half the size, with a plane in front of it at about 2 m.
+/// A camera with images reduced by a factor.
+void reduce(Camera& camera, int factor) {
+  camera.size_px /= factor;
+  camera.parameters.head<4>() << camera.f_px() / factor, camera.ax(), camera.ox_px() / factor,
+      camera.oy_px() / factor;
+}
+
+/// The test rig at half the size.
+Rig small_rig() {
+  Rig rig = test::stereo_rig();
+  for (Camera& camera : rig.cameras) reduce(camera, 2);
+  return rig;
+}
+
+/// A rig with a plane in front of it at about 2 m.
 struct Pair {
-  Pair() {
-    rig = test::stereo_rig();
-    for (Camera& camera : rig.cameras) {
-      camera.size_px /= 2;
-      camera.parameters.head<4>() << 0.5 * camera.f_px(), camera.ax(), 0.5 * camera.ox_px(),
-          0.5 * camera.oy_px();
-    }
+  explicit Pair(const Rig& of = small_rig(), double noise = 2) : rig(of) {
+    cv::Mat noisy[2];
     for (int c = 0; c < 2; ++c) {
       RandomStream draws({.seed = 3, .feature = std::uint32_t(c), .source = 204});
       clean[c] = test::photograph(plane, rig, c);
-      image[c] = corner_image(test::with_noise(clean[c], noise, draws), {.count = 300 + 150 * c});
+      noisy[c] = test::with_noise(clean[c], noise, draws);
     }
+    image = corner_images(noisy[0], noisy[1], rig, {.count = 300});
   }
 
   Eigen::Vector2d true_right(const Eigen::Vector2d& left_px) const {
@@ -54,11 +73,10 @@ struct Pair {
     return sigma.cwiseAbs2().asDiagonal();
   }
 
-  static constexpr double noise = 2;
   Rig rig;
   test::TexturedPlane plane;
   cv::Mat clean[2];
-  CornerImage image[2];
+  CornerImages image;
 };
 
 const Pair& pair() {
@@ -68,21 +86,21 @@ const Pair& pair() {
 
 std::vector<CornerMatch> matched(const CornerMatchingOptions& options = {}) {
   const EpipolarBand band(pair().rig, Pair::covariance(pair().rig), {.nearest_m = 1});
-  return match_corners(pair().image[0], pair().image[1], band, options);
+  return match_corners(pair().image.left, pair().image.right, band, options);
 }
 
 /// Of the right pixel against the left one's true place, across the epipolar curve.
-double error_across(const CornerMatch& match) {
-  const Eigen::Vector2d truth = pair().true_right(match.left_px);
-  const Eigen::Vector3d X = pair().plane.point(pair().rig.cameras[0], Pose{}, match.left_px);
-  const Eigen::Vector2d along = (pixel_pair(pair().rig, 0.99 * X)->other_px - truth).normalized();
+double error_across(const CornerMatch& match, const Pair& of = pair()) {
+  const Eigen::Vector2d truth = of.true_right(match.left_px);
+  const Eigen::Vector3d X = of.plane.point(of.rig.cameras[0], Pose{}, match.left_px);
+  const Eigen::Vector2d along = (pixel_pair(of.rig, 0.99 * X)->other_px - truth).normalized();
   const Eigen::Vector2d error = match.right_px - truth;
   return along.x() * error.y() - along.y() * error.x();
 }
 
 TEST(CornerMatching, FindsMostAndHardlyAnyWrong) {
   const auto matches = matched();
-  EXPECT_GT(matches.size(), 0.6 * pair().image[0].corners.size());
+  EXPECT_GT(matches.size(), 0.6 * pair().image.left.corners.size());
   int wrong = 0;
   std::vector<double> across;
   for (const CornerMatch& match : matches) {
@@ -130,13 +148,91 @@ TEST(CornerMatching, StatesItsNoise) {
   EXPECT_GT(squares, 0.6);
 }
 
+struct UnlikeCameras {
+  std::string name;
+  std::function<void(Rig&)> change;
+  double left_px_per_right_px = 1;  ///< sizes of things, right ÷ left
+};
+
+/// Turned about its optical axis, with the principal point in the middle: the same points are seen.
+void roll(Rig& rig, double angle_rad) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  rig.T_camera_first[1] = {turn * rig.T_camera_first[1].R, turn * rig.T_camera_first[1].t};
+}
+
+const std::vector<UnlikeCameras>& unlike_cameras() {
+  static const std::vector<UnlikeCameras> all = {
+      {"rolled by 10 degrees", [](Rig& rig) { roll(rig, 10 * std::numbers::pi / 180); }},
+      {"upside down", [](Rig& rig) { roll(rig, std::numbers::pi); }},
+      {"a quarter turn",
+       [](Rig& rig) {
+         roll(rig, std::numbers::pi / 2);
+         Camera& camera = rig.cameras[1];
+         std::swap(camera.size_px[0], camera.size_px[1]);
+         const double ox = camera.ox_px();
+         camera.parameters[2] = camera.oy_px();
+         camera.parameters[3] = ox;
+       }},
+      {"verged",
+       [](Rig& rig) {
+         const Eigen::Matrix3d turn =
+             Eigen::AngleAxisd(0.25, Eigen::Vector3d::UnitY()).toRotationMatrix();
+         rig.T_camera_first[1] = {turn * rig.T_camera_first[1].R, turn * rig.T_camera_first[1].t};
+       }},
+      {"half the pixels", [](Rig& rig) { reduce(rig.cameras[1], 2); }, 0.5},
+      {"a longer lens", [](Rig& rig) { rig.cameras[1].parameters[0] *= 1.6; }, 1.6},
+  };
+  return all;
+}
+
+class CornersOfUnlikeCameras : public testing::TestWithParam<int> {};
+
+/// Most of what both see is matched, hardly any of it wrongly, and with errors as stated: the mean
+/// square of 90 to 250 errors over their standard deviations is itself known to 0.15 at most.
+TEST_P(CornersOfUnlikeCameras, AreMatchedAsWell) {
+  const UnlikeCameras& unlike = unlike_cameras()[static_cast<std::size_t>(GetParam())];
+  Rig rig = small_rig();
+  unlike.change(rig);
+  const Pair made(rig, 8);  // noise that outweighs what interpolation does
+  const EpipolarBand band(rig, Pair::covariance(rig), {.nearest_m = 1});
+  const auto matches = match_corners(made.image.left, made.image.right, band,
+                                     {.min_aligned_score = 0.8, .sigma_floor_px = 0});
+  int visible = 0;
+  for (const ImageCorner& corner : made.image.left.corners) {
+    visible += in_image(rig.cameras[1], made.true_right(corner.pixel_px));
+  }
+  int wrong = 0;
+  double squares = 0;
+  const double ratio = unlike.left_px_per_right_px;
+  for (const CornerMatch& match : matches) {
+    const double error = error_across(match, made);
+    wrong += (match.right_px - made.true_right(match.left_px)).norm() > std::max(1.0, ratio);
+    squares += std::min(25.0, std::pow(error / match.sigma_px, 2) / (1 + ratio * ratio));
+  }
+  squares /= static_cast<double>(matches.size());
+  RecordProperty("camera", unlike.name);
+  RecordProperty("visible", visible);
+  RecordProperty("matches", static_cast<int>(matches.size()));
+  RecordProperty("wrong", wrong);
+  RecordProperty("z_mean_square", std::to_string(squares));
+  EXPECT_GT(matches.size(), 0.5 * visible) << unlike.name;
+  EXPECT_LE(wrong, 2) << unlike.name;
+  EXPECT_LT(squares, 1.6) << unlike.name;
+  EXPECT_GT(squares, 0.5) << unlike.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         CornersOfUnlikeCameras,
+                         testing::Range(0, static_cast<int>(unlike_cameras().size())));
+
 TEST(CornerMatching, IsTheSameFromTheOtherSide) {
   Rig exchanged;
   exchanged.cameras = {pair().rig.cameras[1], pair().rig.cameras[0]};
   exchanged.T_camera_first = {Pose{}, pair().rig.T_camera_first[1].inverse()};
   const EpipolarBand band(exchanged, Pair::covariance(exchanged), {.nearest_m = 1});
   std::map<int, int> back;
-  for (const CornerMatch& match : match_corners(pair().image[1], pair().image[0], band)) {
+  for (const CornerMatch& match : match_corners(pair().image.right, pair().image.left, band)) {
     back[match.right] = match.left;
   }
   const auto matches = matched();
@@ -150,7 +246,8 @@ TEST(CornerMatching, IsTheSameFromTheOtherSide) {
 
 TEST(CornerMatching, FindsHardlyAnythingWithTheImagesExchanged) {
   const EpipolarBand band(pair().rig, Pair::covariance(pair().rig), {.nearest_m = 1});
-  EXPECT_LT(match_corners(pair().image[1], pair().image[0], band).size(), 0.1 * matched().size());
+  EXPECT_LT(match_corners(pair().image.right, pair().image.left, band).size(),
+            0.1 * matched().size());
 }
 
 TEST(CornerMatching, RefusesSenselessOptions) {
@@ -211,10 +308,10 @@ TEST(PatchAlignment, FollowsASlantFromNearBy) {
   const Pair& p = pair();
   int settled = 0, near = 0;
   for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector2d left_px = p.image[0].corners[i].pixel_px;
+    const Eigen::Vector2d left_px = p.image.left.corners[i].pixel_px;
     const Eigen::Vector2d truth = p.true_right(left_px);
     if (!in_image(p.rig.cameras[1], truth - Eigen::Vector2d(10, 0))) continue;
-    const auto aligned = align_patch(p.image[0].grey, p.image[1].grey, left_px,
+    const auto aligned = align_patch(p.image.left.grey, p.image.right.grey, left_px,
                                      truth + Eigen::Vector2d(0.4, -0.3), {1, 0});
     if (!aligned) continue;
     ++settled;

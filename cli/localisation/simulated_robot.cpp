@@ -12,6 +12,7 @@
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/simulation/route_remarks.h"
 #include "cli/simulation/source_options.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -56,6 +57,7 @@ SimulatedRobot::SimulatedRobot(const ViewOptions& options,
       visibility_(world_),
       settings_(std::move(settings)) {
   settings_.mount = options.mount();
+  tell_blocked_route(world_, options.world, settings_.mount.height_m, session);
   settings_.sources = sources_of(options.sources);
   settings_.seed = options.seed;
   settings_.localiser.corners = settings_.localiser.corners || options.corners;

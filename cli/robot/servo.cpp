@@ -111,6 +111,11 @@ void report(const std::vector<ServoTrial>& trials,
     json["failure"] = t.failure;
     break;
   }
+  if (converged == 0 && figures.statuses[3] == 0) {
+    session.add_trust_warning(
+        fmt::format("none of {} robots says that it arrived, so nothing is known of its errors",
+                    trials.size()));
+  }
   std::string text = fmt::format(
       "{} of {} trials converged (95 %: {:.1f} to {:.1f} %); {} timed out, {} lost the door\n",
       converged, trials.size(), 100 * interval.low, 100 * interval.high, figures.statuses[1],

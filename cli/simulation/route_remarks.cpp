@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "cli/program/session.h"
 #include "sim/routing/floor_plan.h"
 #include "sim/routing/route_proposal.h"
+#include "sim/study/blocked_route.h"
 #include "sim/study/standing_place.h"
+#include "sim/world.h"
 
 namespace vernier::cli {
 
@@ -45,6 +48,18 @@ std::string open_floor_text(const RouteProposal& proposal) {
       "the floor of the route is open to the surroundings by a gap of about {:.1f} m or less; if "
       "the route should not lead there, close the gap, or give [[route]] points_m",
       proposal.gap_m);
+}
+
+void tell_blocked_route(const World& world,
+                        const std::string& name,
+                        double eye_height_m,
+                        Session& session) {
+  constexpr double most = 0.1;
+  const sim::internal::RouteFault route = sim::internal::route_fault(world, eye_height_m);
+  if (route.fault.empty()) return;
+  const std::string text = name + ": its route " + route.fault + "; " + route.remedy;
+  if (sim::internal::blocked_route(world, eye_height_m).share() < most) return session.warn(text);
+  session.add_trust_warning(text);
 }
 
 }  // namespace vernier::cli

@@ -216,7 +216,8 @@ void add_simulate(CLI::App& app, Session& session) {
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   verb->add_option("--height-m", o->height_m,
-                   "camera height, metres; with --poses: of their origin")
+                   "camera height, metres; with --poses: of their origin above the floor, "
+                   "to which their own heights are added (0 for those of drive --truth)")
       ->capture_default_str();
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
       ->check(finite)

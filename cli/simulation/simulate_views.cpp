@@ -50,6 +50,7 @@ NoiseFreeViewOptions looking_from(const LevelPose& level,
 
 void report(const std::vector<double>& edges,
             const std::vector<double>& lines,
+            const std::vector<double>& heights_m,
             double baseline_m,
             const std::string& output,
             Session& session) {
@@ -65,14 +66,15 @@ void report(const std::vector<double>& edges,
       {{"views", lines.size()},
        {"segments_median", median(edges)},
        {"lines_median", median(lines)},
+       {"camera_height_median_m", median(heights_m)},
        {"baseline_m", baseline_m},
        {"doubts", session.trust_warnings()},
        {"output", output}},
-      fmt::format("{}: {:.0f} segments and {:.0f} reliable lines each (medians); "
-                  "depths err as those of a pair with a baseline of {:.3f} m\nwritten to "
-                  "{}\n",
+      fmt::format("{}: {:.0f} segments and {:.0f} reliable lines each, cameras {:.2f} m above the "
+                  "floor (medians); depths err as those of a pair with a baseline of {:.3f} m\n"
+                  "written to {}\n",
                   counted(static_cast<std::int64_t>(lines.size()), "view"), median(edges),
-                  median(lines), baseline_m, output));
+                  median(lines), median(heights_m), baseline_m, output));
 }
 
 }  // namespace
@@ -101,7 +103,7 @@ void simulate_views(const Visibility& visibility,
   OutputFiles outputs;
   FileInProgress& views = outputs.add(options.output);
   FileInProgress* const segments_file = outputs.add_wanted(options.segments);
-  std::vector<double> edges, lines;
+  std::vector<double> edges, lines, heights_m;
   Progress progress(session, "views");
   for (std::size_t i = 0; i < all.poses.size(); ++i) {
     const LevelPose& level = all.poses[i].level;
@@ -116,6 +118,7 @@ void simulate_views(const Visibility& visibility,
     seen.looks[0].view.rig = rig;
     views.append(view_line(seen));
     if (segments_file) segments_file->append(segments_line(segments_of(all.names[i], segments)));
+    heights_m.push_back(level.height_m);
     edges.push_back(static_cast<double>(segments.image.size()));
     lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
     progress.update(static_cast<int>(i + 1), static_cast<int>(all.poses.size()));
@@ -126,7 +129,7 @@ void simulate_views(const Visibility& visibility,
   if (const std::string doubt = tilt_doubt(down); !doubt.empty()) {
     session.add_trust_warning(doubt);
   }
-  report(edges, lines, sensor.baseline_m(), options.output, session);
+  report(edges, lines, heights_m, sensor.baseline_m(), options.output, session);
 }
 
 }  // namespace vernier::cli

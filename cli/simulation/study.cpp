@@ -3,14 +3,19 @@
 #include "sim/study/study.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "cli/program/machine.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
+#include "cli/simulation/route_remarks.h"
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
@@ -19,6 +24,7 @@
 #include "cli/simulation/study_run.h"
 #include "cli/simulation/study_table.h"
 #include "sim/study/instruction_sets.h"
+#include "sim/study/study_file.h"
 
 namespace vernier::cli {
 namespace {
@@ -46,6 +52,16 @@ void print(const Study& study, const fs::path& folder, Session& session) {
   session.result(study_json(study, results), study_table(study, results));
 }
 
+/// Of each world and height of the camera.
+void tell_blocked_routes(const Study& study, Session& session) {
+  std::set<std::pair<std::string, double>> told;
+  for (const StudyCell& cell : study.file.cells) {
+    const double height_m = cell.experiment.mount.height_m;
+    if (!told.emplace(cell.world, height_m).second) continue;
+    tell_blocked_route(world_of(study, cell), cell.world, height_m, session);
+  }
+}
+
 void run(const StudyArguments& options, Session& session) {
   if (options.folder.empty()) {
     throw Error("study", "no output folder given", "give -o DIR");
@@ -63,6 +79,7 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
+  tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };
   run_in_folder(claim, study, std::move(job), "study", session);

@@ -40,6 +40,8 @@
 namespace vernier::cli {
 namespace {
 
+constexpr double robot_height_m = 1.2;  // of the camera, where nothing says another
+
 struct MakeOptions {
   std::uint64_t seed = 1;
   std::string kinds = "office", size, name, output;
@@ -57,7 +59,7 @@ struct ExportOptions {
 
 struct RouteOptions {
   std::string world, output, plan;
-  double eye_height_m = 1.2;
+  double eye_height_m = robot_height_m;
 };
 
 Json world_json(const World& world, const std::string& file) {
@@ -105,12 +107,11 @@ struct Aliasing {
 };
 
 Aliasing aliasing_of(const World& world, const InfoOptions& options) {
-  constexpr double eye_height_m = 1.2;
   const Visibility visibility(world);
   NoiseFreeViewOptions looking;
-  looking.mount.height_m = eye_height_m;
+  looking.mount.height_m = robot_height_m;
   const AliasFinder finder(visibility, read_rig(find_rig(options.rig)).estimate.rig, looking);
-  const QueryPlaces places(visibility, query_protocol(options.protocol), eye_height_m);
+  const QueryPlaces places(visibility, query_protocol(options.protocol), robot_height_m);
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
     const Aliases aliases =
@@ -173,6 +174,7 @@ void info(const InfoOptions& options, Session& session) {
   if (world.route.empty()) {
     session.warn(file.string() + ": has no route; vernier world route proposes one");
   }
+  tell_blocked_route(world, file.string(), robot_height_m, session);
   Json json = world_json(world, file.string());
   std::string text = world_text(world, file.string());
   const std::vector<double> lengths = segment_lengths_m(world);

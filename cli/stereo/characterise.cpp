@@ -61,7 +61,7 @@ PairSamples samples_of(const StereoSceneFile& file,
 
 /// Reports limitations of the results. Returns whether they can be written.
 bool report_limitations(const MeasuredSources& sources, Session& session) {
-  constexpr double max_edge_loss = 0.6, max_chance = 0.35, max_shift_px = 0.5;
+  constexpr double max_edge_loss = 0.6, max_wrong = 0.5, max_chance = 0.35, max_shift_px = 0.5;
   if (!sources.by_pair) {
     session.warn(
         fmt::format("{} pair{}: the intervals are over image parts and do not generalise to other "
@@ -89,6 +89,17 @@ bool report_limitations(const MeasuredSources& sources, Session& session) {
         fmt::format("{:.0f} % of the left image's edges are not at the position predicted by the "
                     "ground truth: check for swapped left and right images, and check truth_scale",
                     100 * sources.edge_loss.share.value));
+  } else if (sources.corners.mismatch.value > max_wrong) {
+    any = false;
+    session.add_trust_warning(fmt::format(
+        "{:.0f} % of the matched corners are not where the ground truth has them: check "
+        "that it belongs to these images, its scale and its offset",
+        100 * sources.corners.mismatch.value));
+  } else if (sources.stereo_mismatch.share.value > max_wrong) {
+    session.add_trust_warning(
+        fmt::format("{:.0f} % of the matched lines are not where the ground truth has them: check "
+                    "the truth, and the matcher and its range",
+                    100 * sources.stereo_mismatch.share.value));
   }
   return any;
 }

@@ -48,8 +48,10 @@ DriveCommand kept_in_view(DriveCommand command,
                           const Pose2D& goal,
                           double half_width) {
   constexpr double no_further = 0.8, back = 0.9, back_radps = 0.2;
+  constexpr double least_cosine = 0.17;  // of the normal: level lines cross the horizon anywhere
   double leftmost = half_width, rightmost = -half_width;
   for (const StereoLine& line : images_of(lines_at(desired, goal), desired.T_right_left)) {
+    if (!(std::abs(line.left.x()) > least_cosine)) continue;
     const double at = -line.left.z() / line.left.x();  // where it crosses the horizon
     leftmost = std::min(leftmost, at);
     rightmost = std::max(rightmost, at);

@@ -22,7 +22,9 @@ using namespace vernier::internal;
 namespace {
 
 /// psi_l. Illumination moves the boundary of a surface inwards or outwards: one sign per surface
-/// (object), one magnitude per edge, the same for all views of a trial.
+/// (object), one magnitude per edge, the same for all views of a trial. A common shift is the same
+/// angle in both eyes: pixels of the left one, so that the right one's are as many times more as
+/// its focal length is longer.
 class LateralShift : public UncertaintySource {
  public:
   explicit LateralShift(const SourceSettings& s)
@@ -55,7 +57,9 @@ class LateralShift : public UncertaintySource {
     const auto stream = static_cast<std::uint32_t>(independent ? eye + 1 : 0);
     RandomStream of_edge =
         draws_of(any_frame, DrawSource::lateral_shift, identity(edge.truth), stream);
-    const double size = size_ * of_edge.uniform(0.5, 1.5);
+    const double focal_ratio =
+        independent ? 1 : any_frame.rig.cameras[eye].f_px() / any_frame.rig.cameras[0].f_px();
+    const double size = size_ * focal_ratio * of_edge.uniform(0.5, 1.5);
     if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
     // Index 3 in the eye's position of the key marks draws of surfaces.
     RandomStream of_surface = draws_of(any_frame, DrawSource::lateral_shift,

@@ -11,6 +11,7 @@
 #include "calib/error.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
+#include "sim/study/blocked_route.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/visibility/box_tree.h"
@@ -143,8 +144,11 @@ Eigen::Vector2d FreeFloor::draw(RandomStream& draws) const {
     const Eigen::Vector2d place = at(cell) + Eigen::Vector2d(x, y);
     if (reaches(place)) return place;
   }
-  throw Error("queries", "no free position near the route in 1000 draws",
-              "move the route through free space");
+  const RouteFault route = route_fault(visibility_.world(), height_m_);
+  throw Error("queries",
+              "no free position near the route in 1000 draws" +
+                  (route.fault.empty() ? "" : ": it " + route.fault),
+              route.remedy.empty() ? "move the route through free space" : route.remedy);
 }
 
 }  // namespace vernier::sim::internal

@@ -175,6 +175,7 @@ std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& de
       if (!p.is_switch) off.*p.value = cell.experiment.sources.*p.value;  // magnitudes stay
     }
     off.lateral_shift_mode = cell.experiment.sources.lateral_shift_mode;
+    off.epipolar_reject_deg = all.epipolar_reject_deg;  // what stereo cannot tell is no error
     return off;
   }();
   std::vector<StudyCell> cells;
@@ -188,6 +189,7 @@ std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& de
   if (designs.only) {
     add(none, no_source, nullptr, 0);
     for (const SourceParameter* p : sources) {
+      if (p->value == &SourceSettings::epipolar_reject_deg) continue;
       SourceSettings with = none;
       with.*p->value = all.*p->value;
       add(with, only_design, p, all.*p->value);

@@ -16,7 +16,9 @@ namespace vernier::sim::internal {
 /// differ in one source only. All cells have the same queries and draws (common random numbers),
 /// so each is compared in pairs with its reference.
 struct OneAtATime {
-  bool only = false;     ///< this source and no other; the reference has none
+  /// This source and no other; the reference has none. `epipolar_reject_deg` stays as it is set in
+  /// both: without it lines along the epipolar line are placed, and every error counts for more.
+  bool only = false;
   bool all_but = false;  ///< all sources but this; the reference has all
   bool swept = false;    ///< this source times each factor, beside all others; the same reference
   std::vector<std::string> sources;          ///< names; empty: all that are on

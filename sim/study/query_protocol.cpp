@@ -13,6 +13,7 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
+#include "sim/study/blocked_route.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
@@ -77,8 +78,11 @@ Pose2D QueryPlaces::draw(std::uint64_t seed, std::uint32_t trial) const {
     const Pose2D query = compose(on_route, {0, across, turn});
     if (is_free_at(query) && is_seen_from({on_route.x_m, on_route.y_m}, query)) return query;
   }
-  throw Error("queries", "no free position near the route in 1000 draws",
-              "move the route through free space");
+  const RouteFault route = route_fault(world, eye_height_m_);
+  throw Error("queries",
+              "no free position near the route in 1000 draws" +
+                  (route.fault.empty() ? "" : ": it " + route.fault),
+              route.remedy.empty() ? "move the route through free space" : route.remedy);
 }
 
 bool QueryPlaces::is_free_at(const Pose2D& pose) const {

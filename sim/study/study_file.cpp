@@ -274,6 +274,21 @@ void StudyReader::note_lines(const toml::table& root, StudyFile& study) const {
   }
 }
 
+/// Refuses a program that no cell asks.
+void check_program_is_asked(const StudyFile& study) {
+  for (const char* key : {"localiser.command", "localiser.time_limit_s"}) {
+    const bool asked =
+        study.lines.count(key) == 0 ||
+        std::any_of(study.cells.begin(), study.cells.end(),
+                    [](const StudyCell& cell) { return cell.experiment.method == "program"; });
+    if (asked) continue;
+    throw Error(
+        place_of(study, key),
+        fmt::format("{} is set, but no localiser.method is \"program\", so it is not used", key),
+        "set method = \"program\", or leave it out");
+  }
+}
+
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
@@ -302,6 +317,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
                 "sources.moved moves what the view sets of the world name",
                 "set world.visibility = \"exact\", or moved = 0");
   }
+  check_program_is_asked(study);
   return study;
 }
 

@@ -49,6 +49,12 @@ auto naming_lines(const StudyFile& file, Work&& work) {
 
 StudyScenes::StudyScenes(const Study& study) : study_(study) {
   for (const StudyCell& cell : study.file.cells) {
+    if (cell.experiment.method == "corners" && world_of(study, cell).corners.empty()) {
+      throw Error(
+          place_of(study.file, "localiser.method"),
+          "localiser \"corners\" looks for corners, and the world " + cell.world + " has none",
+          "add corners to the world (vernier world make has some), or take another method");
+    }
     const std::string key = visibility_key(cell);
     if (visibilities_.count(key) > 0) continue;
     with_errors_of(cell.world, [&] {

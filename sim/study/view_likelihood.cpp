@@ -82,9 +82,9 @@ ViewLikelihood::Seen ViewLikelihood::seen(const VisibleEdge& edge) const {
   return result;
 }
 
-/// Log-density of the mean of `ends` displacements, for an outward shift.
-double ViewLikelihood::shift_density(double mean_px, int ends) const {
-  const double tau = sigma_px_ / std::sqrt(ends), size = sources_.lateral_shift_px;
+/// Log-density of an estimate of an outward shift with this information, 1 of one left end.
+double ViewLikelihood::shift_density(double mean_px, double information) const {
+  const double tau = sigma_px_ / std::sqrt(information), size = sources_.lateral_shift_px;
   if (!(size > 0)) {
     return -0.5 * mean_px * mean_px / (tau * tau) - std::log(tau * std::sqrt(2 * std::numbers::pi));
   }
@@ -103,15 +103,22 @@ ViewLikelihood::Fit ViewLikelihood::fit(const StereoSegment& sensed, const Seen&
     return none;
   }
   const std::array d{left.across[0], left.across[1], right.across[0], right.across[1]};
-  const auto of_ends = [&](int ends, double sign) {
-    double mean = 0, scatter = 0;
-    for (int k = 0; k < ends; ++k) mean += d[static_cast<std::size_t>(k)] / ends;
-    for (int k = 0; k < ends; ++k) {
-      scatter += (d[static_cast<std::size_t>(k)] - mean) * (d[static_cast<std::size_t>(k)] - mean);
+  // displacements by a common shift: the same angle in both eyes
+  const double ratio = rig_.cameras[1].f_px() / rig_.cameras[0].f_px();
+  const std::array gain{1.0, 1.0, ratio, ratio};
+  const auto of_ends = [&](std::size_t ends, double sign) {
+    double mean = 0, information = 0, scatter = 0;
+    for (std::size_t k = 0; k < ends; ++k) {
+      information += gain[k] * gain[k];
+      mean += gain[k] * d[k];
+    }
+    mean /= information;
+    for (std::size_t k = 0; k < ends; ++k) {
+      scatter += (d[k] - gain[k] * mean) * (d[k] - gain[k] * mean);
     }
     const double norm = std::log(sigma_px_ * std::sqrt(2 * std::numbers::pi));
-    return -0.5 * scatter / (sigma_px_ * sigma_px_) - (ends - 1) * norm - 0.5 * std::log(ends) +
-           shift_density(sign * mean, ends);
+    return -0.5 * scatter / (sigma_px_ * sigma_px_) - static_cast<double>(ends - 1) * norm -
+           0.5 * std::log(information) + shift_density(sign * mean, information);
   };
   const double wrong = sources_.stereo_mismatch;
   const double apart = 2 * std::max(1.0, sources_.stereo_mismatch_px);

@@ -48,7 +48,7 @@ class ViewLikelihood {
   };
   Seen seen(const VisibleEdge& edge) const;
   Fit fit(const stereo::StereoSegment& sensed, const Seen& edge) const;
-  double shift_density(double mean_px, int ends) const;
+  double shift_density(double mean_px, double information) const;
 
   Rig rig_;
   SourceSettings sources_;

@@ -9,6 +9,8 @@
 
 #include "calib/camera.h"
 #include "calib/pose.h"
+#include "calib/rig.h"
+#include "stereo/corners/harris_corners.h"
 #include "stereo/image/image_noise.h"
 #include "stereo/image/patch_alignment.h"
 

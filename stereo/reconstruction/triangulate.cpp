@@ -3,8 +3,10 @@
 #include "stereo/reconstruction/triangulate.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "calib/camera.h"
@@ -27,12 +29,37 @@ void require_pair(const Rig& rig) {
   }
 }
 
-/// Standard deviation of the depth at the end of a line. An error e across the right line moves it
-/// by e / sin(angle to the baseline) along the baseline, and dZ = Z² / (f b) per pixel of that.
-double depth_sigma(double depth, double sine, const Rig& rig, double sigma_px) {
-  const double baseline = rig.T_camera_first[1].t.norm();
-  const double both_lines = std::sqrt(2.0) * sigma_px / std::max(sine, 1e-3);
-  return depth * depth * both_lines / (rig.cameras[0].f_px() * baseline);
+/// The unit normal of an image line.
+Eigen::Vector2d normal_of(const ImageSegment& line) {
+  const Eigen::Vector2d along = (line.b_px - line.a_px).normalized();
+  return {-along.y(), along.x()};
+}
+
+/// ∂(x, y) / ∂pixel of the ray (x, y, 1).
+Eigen::Matrix2d ray_by_pixel(const Camera& camera, const Eigen::Vector3d& ray) {
+  ProjectionJacobian J;
+  project(camera, ray, J);
+  return J.point.leftCols<2>().inverse();
+}
+
+/// σ_λ of the left ray's intersection at a depth with the plane of normal n (right frame), per
+/// pixel of both lines; `across` is the left line's normal.
+double depth_sigma(const Rig& rig,
+                   const Eigen::Vector3d& ray,
+                   double depth,
+                   const Eigen::Vector3d& n,
+                   const Eigen::Vector2d& across) {
+  constexpr double least_sine = 1e-3;  // of the plane to the baseline, where depth is unknown
+  const Pose& T = rig.T_camera_first[1];
+  const Eigen::Vector3d in_right = depth * T.R * ray + T.t;
+  if (!(in_right.z() > 0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d right_ray = in_right / in_right.z();
+  const Eigen::RowVector2d by_left =
+      depth * n.transpose() * T.R.leftCols<2>() * ray_by_pixel(rig.cameras[0], ray);
+  const Eigen::RowVector2d by_right =
+      in_right.z() * n.head<2>().transpose() * ray_by_pixel(rig.cameras[1], right_ray);
+  const double slope = std::max(std::abs(n.dot(T.t)), least_sine * n.norm() * T.t.norm()) / depth;
+  return std::hypot(by_left.dot(across), by_right.norm()) / slope;
 }
 
 }  // namespace
@@ -44,30 +71,33 @@ SpaceSegment triangulate(const Rig& rig,
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
   const Pose& T_right_left = rig.T_camera_first[1];
   SpaceSegment result;
+  bool unprojected = true;
   // An erroneous rig may be unable to unproject a pixel; any direction is used then.
   const auto ray_of = [&](const Camera& camera, const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
     if (const auto ray = try_unproject(camera, pixel)) return *ray;
+    unprojected = false;
     result.reliable = false;
     return Eigen::Vector3d::UnitZ();
   };
   const Eigen::Vector3d n =
       ray_of(right, segment.right.a_px).cross(ray_of(right, segment.right.b_px));
   const double offset = n.dot(T_right_left.t);
-  const auto place = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
-    const Eigen::Vector3d ray = ray_of(left, pixel);
-    const double slope = n.dot(T_right_left.R * ray);
-    const double depth = -offset / slope;
-    if (depth > 0 && depth < options.max_depth_m) return depth * ray;
+  double depth[2];
+  Eigen::Vector3d rays[2];
+  for (int end = 0; end < 2; ++end) {
+    rays[end] = ray_of(left, end == 0 ? segment.left.a_px : segment.left.b_px);
+    depth[end] = -offset / n.dot(T_right_left.R * rays[end]);
+    if (depth[end] > 0 && depth[end] < options.max_depth_m) continue;
     result.reliable = false;
-    return options.max_depth_m * ray;
-  };
-  result.a_m = place(segment.left.a_px);
-  result.b_m = place(segment.left.b_px);
-
-  const Eigen::Vector2d direction = segment.left.b_px - segment.left.a_px;
-  const double sine = std::abs(direction.y()) / std::max(direction.norm(), 1e-12);
-  const double farther = std::max(result.a_m.z(), result.b_m.z());
-  result.depth_sigma_m = depth_sigma(farther, sine, rig, options.endpoint_sigma_px);
+    depth[end] = options.max_depth_m;
+  }
+  result.a_m = depth[0] * rays[0];
+  result.b_m = depth[1] * rays[1];
+  const int farther = depth[1] > depth[0] ? 1 : 0;
+  result.depth_sigma_m =
+      unprojected ? options.endpoint_sigma_px *
+                        depth_sigma(rig, rays[farther], depth[farther], n, normal_of(segment.left))
+                  : std::numeric_limits<double>::infinity();
   return result;
 }
 

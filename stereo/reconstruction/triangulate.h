@@ -13,14 +13,13 @@
 namespace vernier::stereo::internal {
 
 struct TriangulationOptions {
-  double endpoint_sigma_px = 0.15;  ///< of each end point across its line, for depth_sigma_m
+  double endpoint_sigma_px = 0.15;  ///< of either line across itself, for depth_sigma_m
   double max_depth_m = 30;  ///< an end at or beyond this depth, or behind the rig, is unreliable
 };
 
 /// Triangulates the edge in space from a matched pair of image lines.
 ///
 /// The right line's end points span a plane through the right camera with normal n (right frame).
-/// The point on the left ray r at depth λ lies in this plane if n·(R λ r + T) = 0, so
 /// The point on the left ray r at depth λ lies in it where n·(R λ r + T) = 0, so
 ///
 ///     λ = -n·T / n·(R r)
@@ -29,7 +28,16 @@ struct TriangulationOptions {
 /// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are placed at that
 /// depth and the segment is marked unreliable, as it is if a pixel cannot be unprojected with this
 /// rig. Lines as planes through the cameras: Hartley and Zisserman, "Multiple View Geometry" (2nd
-/// ed., 2004), section 15.4. Throws Error unless the rig has two cameras.
+/// ed., 2004), section 15.4.
+///
+/// The depth error of the farther end comes from errors of σ pixels of both lines across
+/// themselves. With ∇_l and ∇_r the gradients of n·(R λ r + T) by the pixel of the left end and by
+/// that of the right line, ν the unit normal of the left image line,
+///
+///     σ_λ = σ √((∇_l·ν)² + |∇_r|²) / |n·(R r)|
+///
+/// which is Z² √2 σ / (f b sin φ) for equal cameras side by side and a line at φ to the baseline.
+/// It is infinite if a pixel cannot be unprojected. Throws Error unless the rig has two cameras.
 SpaceSegment triangulate(const Rig& rig,
                          const StereoSegment& segment,
                          const TriangulationOptions& options = {});
@@ -49,7 +57,6 @@ struct SegmentTriangulation {
 /// the raw images; with w = R λ r + T the end in the right camera frame,
 ///
 ///     δλ = −(δn·w + n·δT + λ n·δ(R r)) / n·(R r)
-/// Returns nullopt if a pixel cannot be unprojected or an end is not in front of the rig.
 /// Nothing where a pixel has no ray or an end is not in front of the rig.
 std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
                                                               const StereoSegment& segment);

@@ -285,6 +285,15 @@ class Characterise(unittest.TestCase):
             self.assertIn('not written', done.stderr)
             self.assertFalse((self.folder / 'sources.toml').exists())
 
+    def test_a_truth_that_is_off_everywhere(self):
+        """By 3 px: edges still lie near where it has them, matched corners do not."""
+        _, _, truth = pair()
+        write_pgm(self.folder / 'off.pgm', [[value + 12 for value in row] for row in truth])
+        done = self.run_it('-o', 'sources.toml', truth='off')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('not trustworthy', done.stderr)
+        self.assertFalse((self.folder / 'sources.toml').exists())
+
     def test_bad_input(self):
         def complains(done, of):
             self.assertEqual(done.returncode, 2, done.stdout + done.stderr)

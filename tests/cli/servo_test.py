@@ -65,6 +65,11 @@ class Servo(verb_calls.ProgramCase):
         self.assertEqual([row['trial'] for row in rows], ['0', '1', '2'])
         self.assertIn('trial 2', (self.folder / 'plan.svg').read_text())
 
+    def test_none_that_arrives_is_no_result(self):
+        run = self.run_program('--trials', '2', '--source', 'none', '--robot', 'max_speed_mps=0.001')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn('none of 2 robots says that it arrived', run.stderr)
+
     def test_bad_options_get_one_line(self):
         self.assertIn('use taught, recorded or model', self.refused('--goal', 'guessed'))
         self.assertIn('is no template', self.refused('--door', 'gate'))

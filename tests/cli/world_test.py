@@ -182,6 +182,25 @@ class World(verb_calls.ProgramCase):
         run = self.run_program('info', 'bare.world.toml')
         self.assertIn('vernier world route', run.stderr)
 
+    def test_a_route_through_walls_and_corners_that_are_missing_are_told(self):
+        self.done('import', 'room.ply', '-o', 'room.world.toml')
+        text = (self.folder / 'room.world.toml').read_text()
+        through_the_wall = '[[route]]\npoints_m = [[1.5, 1.5], [-20, 1.5]]\n'
+        (self.folder / 'wall.world.toml').write_text(text[:text.index('[[route]]')] + through_the_wall)
+        run = self.run_program('info', 'wall.world.toml', '--poses', 0)
+        self.assertIn('wall.world.toml: its route leads through something in', run.stderr)
+        (self.folder / 'bare.world.toml').write_text(
+            'format = "vernier/world"\nversion = 1\nname = "bare"\n[loose]\nsegments = [\n' +
+            ''.join(f'[{x}, 4, 0, {x}, 4, 2.5],\n' for x in range(1, 6)) +
+            ']\n[[route]]\npoints_m = [[1, 1], [5, 1]]\n')
+        (self.folder / 'study.toml').write_text('[study]\ntrials = 3\n[world]\nfile = "bare.world.toml"\n'
+                                                '[localiser]\nmethod = "corners"\n')
+        study = subprocess.run([PROGRAM, 'study', 'study.toml', '-o', 'out'], capture_output=True,
+                               text=True, cwd=self.folder, timeout=120)
+        self.assertEqual(study.returncode, 2, study.stderr)
+        self.assertIn('study.toml:6: localiser "corners" looks for corners', study.stderr)
+        self.assertFalse((self.folder / 'out').exists())
+
     def test_the_page_holds_all_it_needs(self):
         run = self.run_program('view', 'workshop', '--poses', 4, '-o', 'view.html')
         if 'libjs-three' in run.stderr:

@@ -12,6 +12,8 @@
 
 #include "calib/base/ordered_parallel.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig_estimate.h"
 #include "localise/place.h"
 #include "sim/differential_drive.h"
 #include "sim/robot.h"
@@ -94,6 +96,24 @@ TEST(VisualServo, ConvergesWithoutErrors) {
       EXPECT_LT(t.position_error_m, 0.025) << name(goal) << trial;
       EXPECT_LT(std::abs(t.heading_error_rad), 0.01) << name(goal) << trial;
       EXPECT_EQ(t.contacts, 0);
+    }
+  }
+}
+
+// Level lines are told apart by stereo where the baseline is tilted, and then are among those that
+// are followed.
+TEST(VisualServo, ConvergesWithATiltedBaselineAndARolledCamera) {
+  RigEstimate tilted = test::nominal_rig(), rolled = test::nominal_rig();
+  tilted.rig.T_camera_first[1].t.y() = 0.3 * tilted.rig.T_camera_first[1].t.norm();
+  const Eigen::Matrix3d roll = rotation_from_vector({0, 0, 0.2});
+  Pose& T = rolled.rig.T_camera_first[1];
+  T = {roll * T.R, roll * T.t};
+  for (const RigEstimate& rig : {tilted, rolled}) {
+    const ServoExperiment experiment(test::small_office_visibility(), rig, exact_robot(), {});
+    for (std::uint32_t trial = 0; trial < 8; ++trial) {
+      const ServoTrial t = experiment.run(7, trial);
+      EXPECT_EQ(t.status, ServoStatus::converged) << trial;
+      EXPECT_LT(t.position_error_m, 0.03) << trial;
     }
   }
 }

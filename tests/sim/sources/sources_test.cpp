@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -111,6 +112,8 @@ std::map<int, double> outward_shifts(const Sensor& sensor,
 }
 
 TEST_F(Sources, LateralShiftMovesBothEyesAlikeAlongTheNormal) {
+  const std::vector<Camera>& cameras = test::nominal_rig().rig.cameras;
+  const double ratio = cameras[1].f_px() / cameras[0].f_px();  // the same angle
   SourceSettings settings = no_sources();
   settings.lateral_shift_px = 3;
   const StereoObservation shifted = sense(settings);
@@ -123,7 +126,25 @@ TEST_F(Sources, LateralShiftMovesBothEyesAlikeAlongTheNormal) {
     EXPECT_NEAR(std::abs(size), left.norm(), 1e-9);
     EXPECT_GE(left.norm(), 1.5 - 1e-9);
     EXPECT_LE(left.norm(), 4.5 + 1e-9);
-    EXPECT_NEAR(right.dot(normal(e.right)), size, 1e-9);
+    EXPECT_NEAR(right.dot(normal(e.right)), ratio * size, 1e-9);
+  }
+}
+
+/// The same angle, not the same number of pixels, which would be an error of disparity.
+TEST_F(Sources, LateralShiftIsAsManyTimesMorePixelsAsTheLensIsLonger) {
+  Rig rig = test::nominal_rig().rig;
+  rig.cameras[1].parameters[0] *= 1.5;
+  const double ratio = rig.cameras[1].f_px() / rig.cameras[0].f_px();
+  SourceSettings settings = no_sources();
+  const StereoObservation clean = Sensor(rig, settings, 1e-6).sense(seen(), {.seed = 7});
+  settings.lateral_shift_px = 3;
+  const StereoObservation shifted = Sensor(rig, settings, 1e-6).sense(seen(), {.seed = 7});
+  ASSERT_EQ(shifted.segments.size(), clean.segments.size());
+  ASSERT_GT(clean.segments.size(), 20u);
+  for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
+    const StereoSegment &s = shifted.segments[i], &c = clean.segments[i];
+    const double left = (s.left.a_px - c.left.a_px).dot(normal(c.left));
+    EXPECT_NEAR((s.right.a_px - c.right.a_px).dot(normal(c.right)), ratio * left, 1e-9);
   }
 }
 

@@ -43,7 +43,7 @@ TEST(StudyFile, ShippedStudiesAreRead) {
   const std::filesystem::path folder =
       std::filesystem::path(VERNIER_SOURCE_DIR) / "datasets" / "studies";
   const std::map<std::string, std::size_t> cells{{"board_views.toml", 4},  {"campaign.toml", 77},
-                                                 {"each_source.toml", 47}, {"stages.toml", 5},
+                                                 {"each_source.toml", 46}, {"stages.toml", 5},
                                                  {"tuning.toml", 24},      {"versions.toml", 4}};
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -218,6 +218,9 @@ TEST(StudyFile, AProgramIsPartOfTheCell) {
   EXPECT_NE(
       complaint_of(program + "command = \" \"\n").find("s.toml:4: localiser.command is empty"),
       std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[localiser]\ncommand = \"./mine\"\n")
+                .find("s.toml:3: localiser.command is set, but no localiser.method is \"program\""),
+            std::string::npos);
   EXPECT_NE(complaint_of(program + "command = \"a 'b\"\n").find("unclosed quote"),
             std::string::npos);
   EXPECT_NE(complaint_of(program + "command = \"a\"\ntime_limit_s = 0\n").find("out of range"),

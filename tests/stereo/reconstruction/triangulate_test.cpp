@@ -4,14 +4,22 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/lens_models.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/random.h"
 #include "stereo/segment.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
+using namespace vernier::internal;
 using namespace vernier::stereo;
 using namespace vernier::stereo::internal;
 
@@ -72,6 +80,53 @@ TEST(TriangulateDoubt, DepthSigmaGrowsWithTheSquareOfDepthAndForFlatLines) {
   };
   EXPECT_NEAR(sigma(4, 10) / sigma(2, 10), 4, 0.2);
   EXPECT_GT(sigma(2, 0.2), 3 * sigma(2, 10));
+}
+
+/// Scatter of the depth of the farther end over 2,000 draws of noise of both lines, over what is
+/// stated; the ratio's own standard deviation is 1.6 %, and 12 ratios lie within 7 % but once in
+/// 1,000 times. Cameras beside and above each other, verged, rolled, and of unlike focal lengths.
+TEST(TriangulateDoubt, DepthSigmaIsTheScatterForAnyRig) {
+  const auto turned = [](Rig rig, const Eigen::Vector3d& by) {
+    const Eigen::Matrix3d R = rotation_from_vector(by);
+    rig.T_camera_first[1] = {R * rig.T_camera_first[1].R, R * rig.T_camera_first[1].t};
+    return rig;
+  };
+  const Rig like = test::stereo_rig();
+  Rig above = like, longer = like;
+  above.T_camera_first[1].t = {0.003, -0.2, 0.002};
+  longer.cameras[1].parameters[0] *= 2;
+  const std::pair<std::string, Rig> rigs[] = {{"beside", like},
+                                              {"above", above},
+                                              {"longer lens", longer},
+                                              {"verged", turned(like, {0, 0.2, 0})},
+                                              {"rolled", turned(like, {0, 0, 1.3})},
+                                              {"fisheye", test::stereo_rig(Fisheye4{})}};
+  constexpr double sigma_px = 0.1;
+  RandomStream draws({.seed = 6, .source = 206});
+  for (const auto& [name, rig] : rigs) {
+    for (const Eigen::Vector3d& along :
+         {Eigen::Vector3d(0.25, 0.3, 0.2), Eigen::Vector3d(0.3, -0.1, -0.4)}) {
+      const Eigen::Vector3d middle(0.1, -0.05, 3);
+      const StereoSegment pair{seen_by(rig, 0, middle - along, middle + along),
+                               seen_by(rig, 1, middle - along, middle + along), 0};
+      const SpaceSegment exact = triangulate(rig, pair, {.endpoint_sigma_px = sigma_px});
+      const bool at_b = exact.b_m.z() > exact.a_m.z();
+      double squares = 0;
+      constexpr int n = 2000;
+      for (int i = 0; i < n; ++i) {
+        StereoSegment noisy = pair;
+        for (ImageSegment* line : {&noisy.left, &noisy.right}) {
+          const Eigen::Vector2d d = (line->b_px - line->a_px).normalized();
+          for (Eigen::Vector2d* end : {&line->a_px, &line->b_px}) {
+            *end += sigma_px * draws.normal() * Eigen::Vector2d(-d.y(), d.x());
+          }
+        }
+        const SpaceSegment s = triangulate(rig, noisy);
+        squares += std::pow(at_b ? s.b_m.z() - exact.b_m.z() : s.a_m.z() - exact.a_m.z(), 2) / n;
+      }
+      EXPECT_NEAR(std::sqrt(squares) / exact.depth_sigma_m, 1, 0.07) << name;
+    }
+  }
 }
 
 TEST(TriangulateDoubt, OneCameraIsRefused) {

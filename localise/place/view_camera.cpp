@@ -7,6 +7,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "localise/place.h"
 
 namespace vernier::localise::internal {
@@ -30,7 +31,13 @@ ViewCamera view_camera(const PlaceView& view) {
   };
   ViewCamera v;
   v.f_px = static_cast<float>(f);
-  v.baseline_m = static_cast<float>(view.rig->T_camera_first[1].t.norm());
+  const Pose& T = view.rig->T_camera_first[1];
+  v.baseline_m = static_cast<float>(T.t.norm());
+  const Eigen::Vector2d across = (T.R.transpose() * T.t).head<2>();
+  if (across.norm() > 1e-9) {  // not straight ahead
+    v.baseline_u = static_cast<float>(across.x() / across.norm());
+    v.baseline_v = static_cast<float>(across.y() / across.norm());
+  }
   v.height_m = static_cast<float>(view.mount.height_m);
   v.cos_pitch = static_cast<float>(std::cos(view.mount.pitch_rad));
   v.sin_pitch = static_cast<float>(std::sin(view.mount.pitch_rad));

@@ -10,9 +10,10 @@ namespace vernier::localise::internal {
 
 /// The pair of cameras without distortion in which views are compared: pixels of the left camera's
 /// focal length from its principal point (u right, v down), and w = 1 / depth; the right camera
-/// sees u - f B w.
+/// sees (u, v) - f B w times the baseline's direction.
 struct ViewCamera {
   float f_px = 0, baseline_m = 0;
+  float baseline_u = 1, baseline_v = 0;  ///< the baseline's direction in the image, of unit length
   float height_m = 0, cos_pitch = 1, sin_pitch = 0;            ///< of the mount
   float left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;  ///< the image, less a margin
 

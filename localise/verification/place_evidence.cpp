@@ -97,7 +97,7 @@ PlaceEvidence place_evidence(const ComparedView& view,
   for (std::size_t set = 0; set < 2; ++set) {
     const ImageLines& predicted = *sets(recorded)[set];
     for (int i = 0; i < predicted.size; ++i) {
-      evidence.missed[set].push_back(missed(predicted, i));
+      evidence.missed[set].push_back(missed(predicted, i, view.camera));
     }
   }
   return evidence;

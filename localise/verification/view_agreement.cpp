@@ -26,15 +26,16 @@ float likelihood(const LineMatch& match, const AgreementOptions& options) {
   return options.background + (1 - options.background) * likeness(match);
 }
 
-bool may_be_missed(const ImageLines& lines, int line) {
+bool may_be_missed(const ImageLines& lines, int line, const ViewCamera& camera) {
   constexpr float shortest_px = 25;    // shorter ones are often lost
-  constexpr float least_sine = 0.14f;  // 8 degrees: flatter lines have no disparity
-  return lines.length_px[line] >= shortest_px && std::abs(lines.dy[line]) >= least_sine;
+  constexpr float least_sine = 0.14f;  // 8 degrees: closer to the baseline, no disparity
+  const float sine = lines.dy[line] * camera.baseline_u - lines.dx[line] * camera.baseline_v;
+  return lines.length_px[line] >= shortest_px && std::abs(sine) >= least_sine;
 }
 
-float missed(const ImageLines& lines, int line) {
+float missed(const ImageLines& lines, int line, const ViewCamera& camera) {
   constexpr float seen_share = 0.8f;  // the rest may be lost to gaps
-  if (lines.counted[line] == 0 || !may_be_missed(lines, line)) return 0;
+  if (lines.counted[line] == 0 || !may_be_missed(lines, line, camera)) return 0;
   const float length = lines.length_px[line];
   const float seen = std::min(1.0f, lines.covered_px[line] / (seen_share * length));
   return observations(length) * (1 - seen);
@@ -42,9 +43,9 @@ float missed(const ImageLines& lines, int line) {
 
 namespace {
 
-float missed(const ImageLines& lines) {
+float missed(const ImageLines& lines, const ViewCamera& camera) {
   float sum = 0;
-  for (int i = 0; i < lines.size; ++i) sum += missed(lines, i);
+  for (int i = 0; i < lines.size; ++i) sum += missed(lines, i, camera);
   return sum;
 }
 
@@ -139,7 +140,8 @@ ViewAgreement agreement(const ComparedView& view,
       result.information += trust * by_disparity.transpose() * by_disparity;
     }
   }
-  result.score += std::log(options.missing) * (missed(room.steep) + missed(room.flat));
+  result.score += std::log(options.missing) *
+                  (missed(room.steep, view.camera) + missed(room.flat, view.camera));
   return result;
 }
 

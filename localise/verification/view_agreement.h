@@ -58,11 +58,11 @@ float likeness(const LineMatch& match);
 /// Density of a line of a view with this best partner, of a perfect one: its own or background.
 float likelihood(const LineMatch& match, const AgreementOptions& options);
 
-/// Whether a predicted line is long and steep enough to be in views.
-bool may_be_missed(const ImageLines& lines, int line);
+/// Whether a predicted line is long and steep enough to the baseline to be in views.
+bool may_be_missed(const ImageLines& lines, int line, const ViewCamera& camera);
 
 /// Length of a predicted line that counts and was not seen, by `covered_px`, in observations.
-float missed(const ImageLines& lines, int line);
+float missed(const ImageLines& lines, int line, const ViewCamera& camera);
 
 /// A predicted line as one of a view.
 QueryLine as_query_line(const ImageLines& lines, int line);

@@ -56,6 +56,7 @@ OnLine on_line(const ImageSegment& part, const ImageSegment& whole) {
 
 ViewLikelihood::ViewLikelihood(Rig rig, const SourceSettings& sources, double min_length_px)
     : rig_(std::move(rig)),
+      rectification_(stereo::rectification(rig_)),
       sources_(sources),
       min_length_px_(min_length_px),
       sigma_px_(std::max(least_sigma, sources.endpoint_sigma_px)) {
@@ -75,10 +76,10 @@ ViewLikelihood::Seen ViewLikelihood::seen(const VisibleEdge& edge) const {
   const Eigen::Vector3d n = edge.a_m.cross(edge.b_m);
   result.side = n.dot(edge.object_centre_m) > 0 ? -1 : 1;
   result.object = edge.object;
-  const Eigen::Vector2d d = result.image[0].b_px - result.image[0].a_px;
-  const double slope_deg = std::atan2(std::abs(d.y()), std::abs(d.x())) * 180 / std::numbers::pi;
+  const double slope_deg =
+      epipolar_angle_rad(rig_, rectification_, result.image[0]) * 180 / std::numbers::pi;
   result.certain = slope_deg > sources_.epipolar_reject_deg + 3 &&
-                   (1 - sources_.edge_loss) * d.norm() > 2.5 * min_length_px_;
+                   (1 - sources_.edge_loss) * result.image[0].length_px() > 2.5 * min_length_px_;
   return result;
 }
 

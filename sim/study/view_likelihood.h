@@ -7,6 +7,7 @@
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
+#include "stereo/rectification.h"
 #include "stereo/segment.h"
 
 namespace vernier::sim::internal {
@@ -51,6 +52,7 @@ class ViewLikelihood {
   double shift_density(double mean_px, double information) const;
 
   Rig rig_;
+  stereo::Rectification rectification_;
   SourceSettings sources_;
   double min_length_px_, sigma_px_;
 };

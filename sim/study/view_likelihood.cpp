@@ -18,6 +18,7 @@
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
+#include "stereo/rectification.h"
 #include "stereo/segment.h"
 
 namespace vernier::sim::internal {

@@ -37,6 +37,8 @@ namespace vernier::cli {
 namespace {
 
 constexpr double min_density = 0.2;    // warn if a smaller fraction of the edges is matched
+constexpr double many_at_top = 0.02;   // of the range: it may end too early …
+constexpr double half = 0.5;           // … and does where fewer edges are matched
 constexpr double max_uncertain = 0.5;  // warn if a larger fraction of segments has uncertain depth
 
 struct StereoArguments {
@@ -78,18 +80,23 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
   return f;
 }
 
-/// Number of edges to match and of edges matched.
+/// Number of edges to match and of edges matched, of these in the top tenth of the range.
 struct EdgesMatched {
-  int asked = 0, matched = 0;
+  int asked = 0, matched = 0, at_top = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
+  double top_share() const { return static_cast<double>(at_top) / std::max(1, matched); }
 };
 
-EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
+EdgesMatched edge_figures(const StereoResult& result,
+                          const DisparityRange& range,
+                          double min_angle_rad) {
+  const double top_px = range.max_px - 0.1 * (range.max_px - range.min_px);
   EdgesMatched f;
   for (std::size_t i = 0; i < result.edges.size(); ++i) {
     if (std::abs(result.edges[i].normal.x()) < std::sin(min_angle_rad)) continue;
     ++f.asked;
     f.matched += result.found[i].matched();
+    f.at_top += result.found[i].disparity_px > top_px;
   }
   return f;
 }
@@ -175,6 +182,12 @@ void check_result(const StereoArguments& options,
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
+  } else if (edges.top_share() > many_at_top) {
+    const std::string text = fmt::format(
+        "{:.0f} % of the matched edges are in the top tenth of the range, and {:.0f} % have no "
+        "match: what is nearer is missing or wrong if --max-disparity {} is too small",
+        100 * edges.top_share(), 100 * (1 - edges.share()), input.range.max_px);
+    edges.share() < half ? session.add_trust_warning(text) : session.warn(text);
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
@@ -286,7 +299,8 @@ void run(const StereoArguments& options, Session& session) {
   check_outputs(options);
   const StereoInput input = read_stereo_input(options.input, session);
   const StereoResult result = look(options, input);
-  const EdgesMatched edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
+  const EdgesMatched edges =
+      edge_figures(result, input.range, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
   check_result(options, input, result, edges, depth, session);
 

@@ -180,6 +180,11 @@ class Made(Case):
         self.works(*self.arguments(), *self.values(), '-q', '--threads', 3)
         self.assertEqual(first, read())
 
+    def test_a_range_that_ends_among_the_matches_is_told(self):
+        done = self.works(*self.arguments(most=6))  # of the wall; the box is at 14
+        self.assertIn('100 % of the matched edges are in the top tenth of the range', done.stderr)
+        self.assertNotIn('top tenth', self.works(*self.arguments(most=24)).stderr)
+
     def test_far_scenes_are_doubted(self):
         done = cli_test.vernier(*self.arguments(), *self.values(), '--offset-px', -5.5, '--json')
         self.assertEqual(done.returncode, 3, done.stderr)

@@ -330,7 +330,8 @@ void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   } else if (centre.x() < 0 && -centre.x() > centre.tail<2>().cwiseAbs().maxCoeff()) {
     diagnosis.trust_warnings.push_back(
         fmt::format("camera 1 (\"{}\") is {:.3g} m to the left of camera 0 (\"{}\"): the cameras "
-                    "seem to be exchanged, which makes disparities negative; swap left and right",
+                    "seem to be exchanged; swap left and right, or take the rig as it is if they "
+                    "stand like this: rectification allows for it",
                     start.rig.cameras[1].name, -centre.x(), start.rig.cameras[0].name));
   }
 }

@@ -27,6 +27,7 @@
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edges/edge_segments.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/external_matcher.h"
@@ -133,6 +134,7 @@ StereoResult look(const StereoArguments& options, const StereoInput& input) {
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
+  drop_blank_matches(input, result.edges, result.found);
   result.map = map;
   check_not_swapped(matcher, result.found, input.range, input.exchanged, options.input.left);
   result.segments = edge_segments(result.edges);

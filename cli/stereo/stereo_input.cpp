@@ -16,7 +16,9 @@
 #include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/stereo/side_by_side.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
 #include "stereo/matching/matcher_input.h"
 #include "stereo/rectification.h"
 #include "stereo/rectification/vertical_field.h"
@@ -63,6 +65,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);
   input.left_valid = std::move(images.left_valid);
+  input.right_valid = std::move(images.right_valid);
   input.left_noise = images.left_noise;
   if (rig.cameras[0].size_px != rig.cameras[1].size_px) return;
   input.exchanged = [rig, geometry, raw, threads = o.threads] {
@@ -175,6 +178,19 @@ StereoInput read_stereo_input(const StereoInputOptions& options, Session& sessio
   }
   repair_rows(options.repair, input, session);
   return input;
+}
+
+void drop_blank_matches(const StereoInput& input,
+                        const std::vector<EdgePoint>& edges,
+                        std::vector<EdgeDisparity>& found) {
+  if (!input.right_valid) return;
+  const ValidPixels& right = *input.right_valid;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!found[i].matched()) continue;
+    const auto x = static_cast<int>(std::lround(edges[i].pixel_px.x() - found[i].disparity_px));
+    const bool inside = x >= 0 && x < right.width_px;
+    if (!inside || !right(x, edges[i].y)) found[i] = {};
+  }
 }
 
 }  // namespace vernier::cli

@@ -5,10 +5,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/rig_estimate.h"
 #include "cli/program/session.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
 #include "stereo/rectification.h"
 #include "stereo/rectification/vertical_field.h"
 #include "stereo/rectified_images.h"
@@ -27,7 +30,8 @@ struct StereoInputOptions {
 /// A rectified pair with information on its cameras.
 struct StereoInput {
   RectifiedPair pair;
-  std::optional<ValidPixels> left_valid;      ///< for raw images: pixels with a source
+  /// Of raw images: pixels with a source.
+  std::optional<ValidPixels> left_valid, right_valid;  ///< for raw images: pixels with a source
   double left_noise = 0;                      ///< of the raw image, grey levels; 0: not known
   std::optional<RectifiedGeometry> geometry;  ///< empty: disparities only
   std::optional<RigEstimate> estimate;        ///< the rig of this geometry
@@ -41,5 +45,10 @@ struct StereoInput {
 /// Reads images and rig, rectifies raw images, estimates and corrects the vertical field, and
 /// reports what was done. Throws Error naming file or option.
 StereoInput read_stereo_input(const StereoInputOptions& options, Session& session);
+
+/// Takes out matches with pixels of the right image that have no source.
+void drop_blank_matches(const StereoInput& input,
+                        const std::vector<EdgePoint>& edges,
+                        std::vector<EdgeDisparity>& found);
 
 }  // namespace vernier::cli

@@ -8,16 +8,56 @@
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
+#include "calib/rig.h"
 #include "localise/place.h"
 
 namespace vernier::localise::internal {
+
+namespace {
+
+constexpr double margin_px = 10;  // lines shorter than this at the border are not detected
+constexpr double widest_tan = 3;  // of half the field of view
+
+/// The box through the middles of the right image's borders, in pixels of the left focal length.
+Eigen::AlignedBox2f right_image(const Rig& rig, double f_px) {
+  const Camera& camera = rig.cameras[1];
+  const Eigen::Array2d last = camera.size_px.cast<double>().array() - 1 - margin_px;
+  Eigen::AlignedBox2f box;
+  for (const Eigen::Vector2d& px :
+       {Eigen::Vector2d(margin_px, camera.oy_px()), Eigen::Vector2d(last.x(), camera.oy_px()),
+        Eigen::Vector2d(camera.ox_px(), margin_px), Eigen::Vector2d(camera.ox_px(), last.y())}) {
+    const auto ray = try_unproject(camera, px);
+    const Eigen::Vector2d beyond =
+        widest_tan * (px - Eigen::Vector2d(camera.ox_px(), camera.oy_px())).normalized();
+    const Eigen::Vector3d direction = rig.T_camera_first[1].R.transpose() *
+                                      (ray ? *ray : Eigen::Vector3d(beyond.x(), beyond.y(), 1));
+    const Eigen::Array2d tangent =
+        direction.head<2>().array() / std::max(direction.z(), 1e-3 * direction.norm());
+    box.extend((f_px * tangent.max(-widest_tan).min(widest_tan)).matrix().cast<float>());
+  }
+  return box;
+}
+
+ViewCamera::Borders cuts_of(const ViewCamera& v) {
+  constexpr float few_px = 5;
+  const Eigen::Vector2f most = v.f_px / nearest_compared_m * v.eye_m;  // largest displacement
+  const Eigen::Vector2f low = most.cwiseMin(0), high = most.cwiseMax(0);
+  const Eigen::Vector2f least_px = v.of_right_px.min(), last_px = v.of_right_px.max();
+  ViewCamera::Borders cuts;
+  cuts.own_left = !(v.eye_m.x() > 0 && least_px.x() > v.left_px - few_px);
+  cuts.left = v.left_px - high.x() < least_px.x() - few_px;
+  cuts.right = v.right_px - low.x() > last_px.x() + few_px;
+  cuts.top = v.top_px - high.y() < least_px.y() - few_px;
+  cuts.bottom = v.bottom_px - low.y() > last_px.y() + few_px;
+  return cuts;
+}
+
+}  // namespace
 
 ViewCamera view_camera(const PlaceView& view) {
   if (!view.rig || view.rig->cameras.size() < 2) {
     throw Error("place view", "has no rig of two cameras", "set PlaceView::rig");
   }
-  constexpr double margin_px = 10;  // lines shorter than this at the border are not detected
-  constexpr double widest_tan = 3;  // of half the field of view
   const Camera& camera = view.rig->cameras[0];
   const double f = camera.f_px();
   const double width = camera.size_px.x() - 1.0, height = camera.size_px.y() - 1.0;
@@ -33,11 +73,8 @@ ViewCamera view_camera(const PlaceView& view) {
   v.f_px = static_cast<float>(f);
   const Pose& T = view.rig->T_camera_first[1];
   v.baseline_m = static_cast<float>(T.t.norm());
-  const Eigen::Vector2d across = (T.R.transpose() * T.t).head<2>();
-  if (across.norm() > 1e-9) {  // not straight ahead
-    v.baseline_u = static_cast<float>(across.x() / across.norm());
-    v.baseline_v = static_cast<float>(across.y() / across.norm());
-  }
+  v.eye_m = (-T.R.transpose() * T.t).head<2>().cast<float>();
+  if (v.eye_m.norm() > 1e-9F) v.along_baseline = v.eye_m.normalized();  // not straight ahead
   v.height_m = static_cast<float>(view.mount.height_m);
   v.cos_pitch = static_cast<float>(std::cos(view.mount.pitch_rad));
   v.sin_pitch = static_cast<float>(std::sin(view.mount.pitch_rad));
@@ -45,6 +82,8 @@ ViewCamera view_camera(const PlaceView& view) {
   v.right_px = ideal(width - margin_px, camera.oy_px(), 0);
   v.top_px = ideal(camera.ox_px(), margin_px, 1);
   v.bottom_px = ideal(camera.ox_px(), height - margin_px, 1);
+  v.of_right_px = right_image(*view.rig, f);
+  v.cuts = cuts_of(v);
   return v;
 }
 

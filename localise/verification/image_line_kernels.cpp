@@ -79,9 +79,15 @@ void predict(const SpaceLines& lines,
   const auto set = [&](float x) { return hn::Set(d, x); };
   const V zero = hn::Zero(d), one = set(1), c = set(cosine), s = set(sine), x0 = set(x_m),
           y0 = set(y_m), h = set(camera.height_m), cp = set(camera.cos_pitch),
-          sp = set(camera.sin_pitch), f = set(camera.f_px), fB = set(camera.disparity_px_m()),
-          left = set(camera.left_px), right = set(camera.right_px), top = set(camera.top_px),
-          bottom = set(camera.bottom_px), near = set(nearest_compared_m);
+          sp = set(camera.sin_pitch), f = set(camera.f_px),
+          eye_u = set(camera.f_px * camera.eye_m.x()), eye_v = set(camera.f_px * camera.eye_m.y()),
+          eye_left = set(camera.of_right_px.min().x()),
+          eye_right = set(camera.of_right_px.max().x()),
+          eye_top = set(camera.of_right_px.min().y()),
+          eye_bottom = set(camera.of_right_px.max().y()), left = set(camera.left_px),
+          right = set(camera.right_px), top = set(camera.top_px), bottom = set(camera.bottom_px),
+          near = set(nearest_compared_m);
+  const ViewCamera::Borders cuts = camera.cuts;
   int steep = 0, flat = 0;
   for (int i = 0; i < static_cast<int>(lines.size); i += lanes) {
     // Camera coordinates of an end: x right, y down, z forward.
@@ -112,8 +118,18 @@ void predict(const SpaceLines& lines,
     part.cut(d, hn::Sub(right, ua), hn::Sub(right, ub));
     part.cut(d, hn::Sub(va, top), hn::Sub(vb, top));
     part.cut(d, hn::Sub(bottom, va), hn::Sub(bottom, vb));
-    // The right eye sees it further left.
-    part.cut(d, hn::NegMulAdd(fB, wa, hn::Sub(ua, left)), hn::NegMulAdd(fB, wb, hn::Sub(ub, left)));
+    if (cuts.own_left) part.cut(d, hn::Sub(ua, left), hn::Sub(ub, left));
+    // The right eye sees it displaced against the baseline.
+    if (cuts.left || cuts.right) {
+      const V uc = hn::NegMulAdd(eye_u, wa, ua), ud = hn::NegMulAdd(eye_u, wb, ub);
+      if (cuts.left) part.cut(d, hn::Sub(uc, eye_left), hn::Sub(ud, eye_left));
+      if (cuts.right) part.cut(d, hn::Sub(eye_right, uc), hn::Sub(eye_right, ud));
+    }
+    if (cuts.top || cuts.bottom) {
+      const V vc = hn::NegMulAdd(eye_v, wa, va), vd = hn::NegMulAdd(eye_v, wb, vb);
+      if (cuts.top) part.cut(d, hn::Sub(vc, eye_top), hn::Sub(vd, eye_top));
+      if (cuts.bottom) part.cut(d, hn::Sub(eye_bottom, vc), hn::Sub(eye_bottom, vd));
+    }
     const V u = between(ua, ub, part.t0), v = between(va, vb, part.t0),
             w = between(wa, wb, part.t0);
     const V du = hn::Sub(between(ua, ub, part.t1), u), dv = hn::Sub(between(va, vb, part.t1), v);

@@ -21,7 +21,7 @@ struct QueryLine {
 };
 
 /// Lines nearer to the camera's plane or shorter in the image are not compared.
-inline constexpr float nearest_compared_m = 0.25f, shortest_compared_px = 8;
+inline constexpr float shortest_compared_px = 8;
 
 inline constexpr float steep_below = 0.375f;  ///< |dx| of a steep line of the query
 

@@ -29,7 +29,8 @@ float likelihood(const LineMatch& match, const AgreementOptions& options) {
 bool may_be_missed(const ImageLines& lines, int line, const ViewCamera& camera) {
   constexpr float shortest_px = 25;    // shorter ones are often lost
   constexpr float least_sine = 0.14f;  // 8 degrees: closer to the baseline, no disparity
-  const float sine = lines.dy[line] * camera.baseline_u - lines.dx[line] * camera.baseline_v;
+  const float sine =
+      lines.dy[line] * camera.along_baseline.x() - lines.dx[line] * camera.along_baseline.y();
   return lines.length_px[line] >= shortest_px && std::abs(sine) >= least_sine;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 #include "sim/mount_error.h"
 #include "sim/noise_free_view.h"
@@ -47,8 +48,10 @@ std::vector<SeenLine> chosen(std::vector<SeenLine> lines, double focal_px) {
 
 /// The door's edges from the goal, as the rig that is told would image them.
 std::vector<SeenLine> by_model(const Robot& robot, const ServoPlace& place) {
-  constexpr double least_cosine = 0.17;  // of the left line's normal, to the epipolar direction
+  constexpr double least_cosine = 0.17;  // of the left line's normal to the baseline
   const Rig& told = robot.told_rig();
+  const Pose& T = told.T_camera_first[1];
+  const Eigen::Vector2d baseline = (T.R.transpose() * T.t).head<2>().normalized();
   const NoiseFreeViewOptions looking = look_from({robot.options().mount, 0});
   std::vector<SeenLine> lines;
   for (const VisibleEdge& edge : look(place.visibility, place.rig.rig, place.goal, looking).edges) {
@@ -57,7 +60,8 @@ std::vector<SeenLine> by_model(const Robot& robot, const ServoPlace& place) {
     const StereoLine image = image_of(space, told.T_camera_first[1]);
     const double length_px =
         (project(told.cameras[0], edge.b_m) - project(told.cameras[0], edge.a_m)).norm();
-    if (std::abs(image.left.x()) > least_cosine) lines.push_back({image, space, length_px});
+    if (std::abs(image.left.head<2>().dot(baseline)) > least_cosine)
+      lines.push_back({image, space, length_px});
   }
   return lines;
 }

@@ -25,10 +25,12 @@ using namespace stereo;
 
 namespace {
 
-/// rho in both images of lines that are more upright than level, by that in the left one.
+/// rho in both images of lines that are more upright than level, by that in the left one. The right
+/// image is that of a camera parallel to the left one: its own may be rolled.
 class UprightLines {
  public:
-  explicit UprightLines(std::span<const SeenLine> seen) {
+  UprightLines(std::span<const SeenLine> seen, const Pose& T_right_left)
+      : R_left_right_(T_right_left.R.transpose()) {
     for (const SeenLine& line : seen) {
       if (const auto entry = entry_of(line.image)) entries_.push_back(*entry);
     }
@@ -59,13 +61,17 @@ class UprightLines {
     double left, right, tilt;
   };
 
-  static std::optional<Entry> entry_of(const StereoLine& line) {
+  std::optional<Entry> entry_of(const StereoLine& line) const {
     constexpr double least_cosine = 0.7;
-    const double l = line.left.x(), r = line.right.x();
-    if (std::abs(l) < least_cosine || std::abs(r) < least_cosine) return std::nullopt;
-    return Entry{-line.left.z() / l, -line.right.z() / r, line.left.y() / l};
+    const ImageLine parallel = R_left_right_ * line.right;
+    const double l = line.left.x(), r = parallel.x();
+    if (std::abs(l) < least_cosine || std::abs(r) < least_cosine * parallel.head<2>().norm()) {
+      return std::nullopt;
+    }
+    return Entry{-line.left.z() / l, -parallel.z() / r, line.left.y() / l};
   }
 
+  Eigen::Matrix3d R_left_right_;
   std::vector<Entry> entries_;
 };
 
@@ -78,7 +84,7 @@ std::vector<GoalHypothesis> lattice_scores(const DesiredView& desired,
                                            std::span<const SeenLine> seen,
                                            const SearchRange& range) {
   constexpr double back_step_m = 0.1, aside_step_m = 0.06, turn_step_rad = 0.0175, reach_px = 12;
-  const UprightLines lines(seen);
+  const UprightLines lines(seen, desired.T_right_left);
   const auto steps = [](double from, double to, double step) {
     return 1 + static_cast<int>(std::ceil((to - from) / step));
   };

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
@@ -173,6 +174,11 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
                                  const ServoOptions& options)
     : visibility_(visibility), rig_(rig), robot_(visibility, rig, robot), options_(options) {
   check_options(options);
+  const Pose& T = rig.rig.T_camera_first[1];
+  const Eigen::Vector3d baseline = T.R.transpose() * T.t;
+  need(std::abs(baseline.x()) > std::abs(baseline.y()),
+       "the baseline is more upright than level, and stereo cannot place upright lines along it",
+       "use a rig with cameras side by side");
   const World& world = visibility.world();
   bool known = false;
   for (std::size_t i = 0; i < world.objects.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
+#include "sim/sources/common_shift.h"
 #include "sim/sources/source_draws.h"
 #include "sim/sources/source_factories.h"
 #include "sim/uncertainty_source.h"
@@ -22,9 +23,8 @@ using namespace vernier::internal;
 namespace {
 
 /// psi_l. Illumination moves the boundary of a surface inwards or outwards: one sign per surface
-/// (object), one magnitude per edge, the same for all views of a trial. A common shift is the same
-/// angle in both eyes: pixels of the left one, so that the right one's are as many times more as
-/// its focal length is longer.
+/// (object), one magnitude per edge, the same for all views of a trial. A common shift is that
+/// of an edge displaced in space, by pixels of the left image (sim/sources/common_shift.h).
 class LateralShift : public UncertaintySource {
  public:
   explicit LateralShift(const SourceSettings& s)
@@ -57,9 +57,10 @@ class LateralShift : public UncertaintySource {
     const auto stream = static_cast<std::uint32_t>(independent ? eye + 1 : 0);
     RandomStream of_edge =
         draws_of(any_frame, DrawSource::lateral_shift, identity(edge.truth), stream);
-    const double focal_ratio =
-        independent ? 1 : any_frame.rig.cameras[eye].f_px() / any_frame.rig.cameras[0].f_px();
-    const double size = size_ * focal_ratio * of_edge.uniform(0.5, 1.5);
+    const double ratio = independent || eye == 0
+                             ? 1
+                             : right_by_left_shift(any_frame.rig, edge.truth.a_m, edge.truth.b_m);
+    const double size = size_ * ratio * of_edge.uniform(0.5, 1.5);
     if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
     // Index 3 in the eye's position of the key marks draws of surfaces.
     RandomStream of_surface = draws_of(any_frame, DrawSource::lateral_shift,

@@ -18,6 +18,7 @@
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
+#include "sim/sources/common_shift.h"
 #include "stereo/rectification.h"
 #include "stereo/segment.h"
 
@@ -77,6 +78,7 @@ ViewLikelihood::Seen ViewLikelihood::seen(const VisibleEdge& edge) const {
   const Eigen::Vector3d n = edge.a_m.cross(edge.b_m);
   result.side = n.dot(edge.object_centre_m) > 0 ? -1 : 1;
   result.object = edge.object;
+  result.right_by_left = right_by_left_shift(rig_, edge.a_m, edge.b_m);
   const double slope_deg =
       epipolar_angle_rad(rig_, rectification_, result.image[0]) * 180 / std::numbers::pi;
   result.certain = slope_deg > sources_.epipolar_reject_deg + 3 &&
@@ -105,9 +107,7 @@ ViewLikelihood::Fit ViewLikelihood::fit(const StereoSegment& sensed, const Seen&
     return none;
   }
   const std::array d{left.across[0], left.across[1], right.across[0], right.across[1]};
-  // displacements by a common shift: the same angle in both eyes
-  const double ratio = rig_.cameras[1].f_px() / rig_.cameras[0].f_px();
-  const std::array gain{1.0, 1.0, ratio, ratio};
+  const std::array gain{1.0, 1.0, edge.right_by_left, edge.right_by_left};  // of a common shift
   const auto of_ends = [&](std::size_t ends, double sign) {
     double mean = 0, information = 0, scatter = 0;
     for (std::size_t k = 0; k < ends; ++k) {

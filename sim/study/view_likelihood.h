@@ -42,7 +42,8 @@ class ViewLikelihood {
     stereo::ImageSegment image[2];
     double side;  ///< +1 if the left normal points away from the object's centre
     int object;
-    bool certain;  ///< at least one piece of it is sensed
+    double right_by_left;  ///< pixels of a common shift (sim/sources/common_shift.h)
+    bool certain;          ///< at least one piece of it is sensed
   };
   struct Fit {
     double outward, inward;  ///< log-likelihoods of both signs of the shift

@@ -97,10 +97,10 @@ ImageMatching match_images(const ImageFiles& files,
                 "use the rig of the two cameras that took the images");
   }
   const EpipolarBand band(prior.rig, covariance.matrix, options.band);
-  const auto [left, right] =
-      corner_images(read_image(files.left, prior.rig.cameras[0], prior_place),
-                    read_image(files.right, prior.rig.cameras[1], prior_place), prior.rig,
-                    {.count = options.corners, .cells = options.cells});
+  const cv::Mat left_grey = read_image(files.left, prior.rig.cameras[0], prior_place);
+  const cv::Mat right_grey = read_image(files.right, prior.rig.cameras[1], prior_place);
+  const auto [left, right] = corner_images(left_grey, right_grey, prior.rig,
+                                           {.count = options.corners, .cells = options.cells});
   ImageMatching result;
   result.files = files;
   result.corners_left = static_cast<int>(left.corners.size());

@@ -105,7 +105,7 @@ TEST(VisualServo, ConvergesWithoutErrors) {
 TEST(VisualServo, ConvergesWithATiltedBaselineAndARolledCamera) {
   RigEstimate tilted = test::nominal_rig(), rolled = test::nominal_rig();
   tilted.rig.T_camera_first[1].t.y() = 0.3 * tilted.rig.T_camera_first[1].t.norm();
-  const Eigen::Matrix3d roll = rotation_from_vector({0, 0, 0.2});
+  const Eigen::Matrix3d roll = rotation_from_vector({0, 0, 1.5});
   Pose& T = rolled.rig.T_camera_first[1];
   T = {roll * T.R, roll * T.t};
   for (const RigEstimate& rig : {tilted, rolled}) {
@@ -146,6 +146,15 @@ TEST(VisualServo, DoorsAndStartsDoNotDependOnErrors) {
     EXPECT_EQ(noisy.run(5, trial).start, exact.run(5, trial).start);
     EXPECT_EQ(noisy.run(5, trial).goal, exact.run(5, trial).goal);
   }
+}
+
+TEST(VisualServo, RefusesCamerasAboveEachOther) {
+  RigEstimate rig = test::nominal_rig();
+  rig.rig.T_camera_first[1].t = {0, -0.12, 0};
+  EXPECT_NE(error_message([&] {
+              ServoExperiment(test::small_office_visibility(), rig, exact_robot(), {});
+            }).find("the baseline is more upright than level"),
+            std::string::npos);
 }
 
 TEST(VisualServo, RefusesWhatIsNotThere) {

@@ -58,8 +58,7 @@ void tell_blocked_route(const World& world,
   const sim::internal::RouteFault route = sim::internal::route_fault(world, eye_height_m);
   if (route.fault.empty()) return;
   const std::string text = name + ": its route " + route.fault + "; " + route.remedy;
-  if (sim::internal::blocked_route(world, eye_height_m).share() < most) return session.warn(text);
-  session.add_trust_warning(text);
+  route.share < most ? session.warn(text) : session.add_trust_warning(text);
 }
 
 }  // namespace vernier::cli

@@ -60,13 +60,13 @@ RouteFault route_fault(const World& world, double eye_height_m) {
     return {fmt::format("passes under what is lower than {:g} m everywhere, {:g} m above a camera "
                         "at {:g} m",
                         eye_height_m + robot_top_m, robot_top_m, eye_height_m),
-            "lower the camera"};
+            "lower the camera", route.share()};
   }
   return {
       fmt::format("leads through something in {:.2g} % of its length, first at ({:.2f}, {:.2f}) "
                   "m: a robot of {:g} m radius cannot stand there",
                   100 * route.share(), route.first_m.x(), route.first_m.y(), robot_radius_m),
-      "move the route (vernier world route proposes one)"};
+      "move the route (vernier world route proposes one)", route.share()};
 }
 
 }  // namespace vernier::sim::internal

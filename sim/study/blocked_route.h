@@ -25,6 +25,7 @@ BlockedRoute blocked_route(const World& world, double eye_height_m);
 /// do; both are empty if nothing does.
 struct RouteFault {
   std::string fault, remedy;
+  double share = 0;  ///< of the route's places
 };
 RouteFault route_fault(const World& world, double eye_height_m);
 

@@ -44,8 +44,9 @@ ViewCamera::Borders cuts_of(const ViewCamera& v) {
   const Eigen::Vector2f low = most.cwiseMin(0), high = most.cwiseMax(0);
   const Eigen::Vector2f least_px = v.of_right_px.min(), last_px = v.of_right_px.max();
   ViewCamera::Borders cuts;
-  cuts.own_left = !(v.eye_m.x() > 0 && least_px.x() > v.left_px - few_px);
   cuts.left = v.left_px - high.x() < least_px.x() - few_px;
+  // where the right eye's border is cut, it comes first
+  cuts.own_left = !(cuts.left && v.eye_m.x() > 0 && least_px.x() > v.left_px - few_px);
   cuts.right = v.right_px - low.x() > last_px.x() + few_px;
   cuts.top = v.top_px - high.y() < least_px.y() - few_px;
   cuts.bottom = v.bottom_px - low.y() > last_px.y() + few_px;

@@ -59,6 +59,7 @@ double depth_sigma(const Rig& rig,
   const Eigen::RowVector2d by_right =
       in_right.z() * n.head<2>().transpose() * ray_by_pixel(rig.cameras[1], right_ray);
   const double slope = std::max(std::abs(n.dot(T.t)), least_sine * n.norm() * T.t.norm()) / depth;
+  if (!(slope > 0)) return std::numeric_limits<double>::infinity();
   return std::hypot(by_left.dot(across), by_right.norm()) / slope;
 }
 

@@ -129,7 +129,7 @@ TEST_P(Predict, CutsLinesToWhatBothEyesSee) {
   const Rig rigs[] = {pinholes({0.3, 0, 0}),
                       pinholes({-0.3, 0, 0}),
                       pinholes({0, 0.3, 0}),
-                      pinholes({0.02, -0.3, 0}),
+                      pinholes({0.001, -0.3, 0}),
                       pinholes({0.3, 0, 0}, std::numbers::pi / 2),
                       pinholes({-0.2, 0.1, 0}, 0, 800),
                       pinholes({0.3, 0, 0}, 0, 350)};

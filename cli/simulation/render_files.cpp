@@ -30,11 +30,7 @@
 namespace vernier::cli {
 namespace {
 
-std::string grey_png(const GreyLevels& image) {
-  cv::Mat bytes;
-  matrix_of(image).convertTo(bytes, CV_8U);
-  return png_of(bytes);
-}
+std::string grey_png(const GreyLevels& image) { return png_of(bytes_of(image)); }
 
 /// 255 where the right eye does not see what the left one does, or nothing is known.
 std::string occluded_png(const PairTruth& truth) {

@@ -191,11 +191,7 @@ void check_alignment(const Rectified& rectified,
                             convergence(rig, rectified.geometry, options));
 }
 
-std::string png(const GreyLevels& image) {
-  cv::Mat bytes;
-  matrix_of(image).convertTo(bytes, CV_8U);
-  return png_of(bytes);
-}
+std::string png(const GreyLevels& image) { return png_of(bytes_of(image)); }
 
 GreyLevels mask(const ValidPixels& valid) {
   GreyLevels image{valid.width_px, valid.height_px, {}};

@@ -31,7 +31,7 @@ struct StereoInputOptions {
 struct StereoInput {
   RectifiedPair pair;
   /// Of raw images: pixels with a source.
-  std::optional<ValidPixels> left_valid, right_valid;  ///< for raw images: pixels with a source
+  std::optional<ValidPixels> left_valid, right_valid;
   double left_noise = 0;                      ///< of the raw image, grey levels; 0: not known
   std::optional<RectifiedGeometry> geometry;  ///< empty: disparities only
   std::optional<RigEstimate> estimate;        ///< the rig of this geometry

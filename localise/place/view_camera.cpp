@@ -12,25 +12,26 @@
 #include "localise/place.h"
 
 namespace vernier::localise::internal {
-
 namespace {
 
 constexpr double margin_px = 10;  // lines shorter than this at the border are not detected
 constexpr double widest_tan = 3;  // of half the field of view
 
-/// The box through the middles of the right image's borders, in pixels of the left focal length.
-Eigen::AlignedBox2f right_image(const Rig& rig, double f_px) {
-  const Camera& camera = rig.cameras[1];
-  const Eigen::Array2d last = camera.size_px.cast<double>().array() - 1 - margin_px;
+/// The box through the middles of an image's borders without distortion, less a margin, as seen by
+/// a camera turned against it. Beyond the lens's limit it ends at widest_tan.
+Eigen::AlignedBox2f image_box(const Camera& camera,
+                              const Eigen::Matrix3d& R_seen_camera,
+                              double f_px) {
+  const Eigen::Vector2d principal(camera.ox_px(), camera.oy_px());
+  const Eigen::Vector2d last = camera.size_px.cast<double>().array() - 1 - margin_px;
   Eigen::AlignedBox2f box;
   for (const Eigen::Vector2d& px :
-       {Eigen::Vector2d(margin_px, camera.oy_px()), Eigen::Vector2d(last.x(), camera.oy_px()),
-        Eigen::Vector2d(camera.ox_px(), margin_px), Eigen::Vector2d(camera.ox_px(), last.y())}) {
+       {Eigen::Vector2d(margin_px, principal.y()), Eigen::Vector2d(last.x(), principal.y()),
+        Eigen::Vector2d(principal.x(), margin_px), Eigen::Vector2d(principal.x(), last.y())}) {
     const auto ray = try_unproject(camera, px);
-    const Eigen::Vector2d beyond =
-        widest_tan * (px - Eigen::Vector2d(camera.ox_px(), camera.oy_px())).normalized();
-    const Eigen::Vector3d direction = rig.T_camera_first[1].R.transpose() *
-                                      (ray ? *ray : Eigen::Vector3d(beyond.x(), beyond.y(), 1));
+    const Eigen::Vector2d beyond = widest_tan * (px - principal).normalized();
+    const Eigen::Vector3d direction =
+        R_seen_camera * (ray ? *ray : Eigen::Vector3d(beyond.x(), beyond.y(), 1));
     const Eigen::Array2d tangent =
         direction.head<2>().array() / std::max(direction.z(), 1e-3 * direction.norm());
     box.extend((f_px * tangent.max(-widest_tan).min(widest_tan)).matrix().cast<float>());
@@ -61,15 +62,6 @@ ViewCamera view_camera(const PlaceView& view) {
   }
   const Camera& camera = view.rig->cameras[0];
   const double f = camera.f_px();
-  const double width = camera.size_px.x() - 1.0, height = camera.size_px.y() - 1.0;
-  // Where a pixel of the border lies without distortion; beyond the lens's limit it is widest_tan.
-  const auto ideal = [&](double u_px, double v_px, int axis) {
-    const auto ray = try_unproject(camera, {u_px, v_px});
-    const bool positive = axis == 0 ? u_px > camera.ox_px() : v_px > camera.oy_px();
-    const double limit = positive ? widest_tan : -widest_tan;
-    const double tangent = ray && ray->z() > 0 ? (*ray)[axis] / ray->z() : limit;
-    return static_cast<float>(f * std::clamp(tangent, -widest_tan, widest_tan));
-  };
   ViewCamera v;
   v.f_px = static_cast<float>(f);
   const Pose& T = view.rig->T_camera_first[1];
@@ -79,11 +71,12 @@ ViewCamera view_camera(const PlaceView& view) {
   v.height_m = static_cast<float>(view.mount.height_m);
   v.cos_pitch = static_cast<float>(std::cos(view.mount.pitch_rad));
   v.sin_pitch = static_cast<float>(std::sin(view.mount.pitch_rad));
-  v.left_px = ideal(margin_px, camera.oy_px(), 0);
-  v.right_px = ideal(width - margin_px, camera.oy_px(), 0);
-  v.top_px = ideal(camera.ox_px(), margin_px, 1);
-  v.bottom_px = ideal(camera.ox_px(), height - margin_px, 1);
-  v.of_right_px = right_image(*view.rig, f);
+  const Eigen::AlignedBox2f own = image_box(camera, Eigen::Matrix3d::Identity(), f);
+  v.left_px = own.min().x();
+  v.right_px = own.max().x();
+  v.top_px = own.min().y();
+  v.bottom_px = own.max().y();
+  v.of_right_px = image_box(view.rig->cameras[1], T.R.transpose(), f);
   v.cuts = cuts_of(v);
   return v;
 }

@@ -20,7 +20,7 @@ struct QueryLine {
   bool steep = false;     ///< it is compared with steep lines, else with flat ones
 };
 
-/// Lines nearer to the camera's plane or shorter in the image are not compared.
+/// Shorter lines in the image are not compared.
 inline constexpr float shortest_compared_px = 8;
 
 inline constexpr float steep_below = 0.375f;  ///< |dx| of a steep line of the query

@@ -5,9 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <vector>
 
+#include "calib/error.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
 #include "sim/world.h"
@@ -30,10 +31,14 @@ std::vector<Eigen::Vector2d> places_of(const World& world) {
   return places;
 }
 
-int free_ones(const World& world, const std::vector<Eigen::Vector2d>& places, double eye_height_m) {
+std::vector<Eigen::Vector2d> blocked_ones(const World& world,
+                                          const std::vector<Eigen::Vector2d>& places,
+                                          double eye_height_m) {
   const Standing standing(world, eye_height_m);
-  return static_cast<int>(std::count_if(places.begin(), places.end(),
-                                        [&](const auto& at) { return standing.is_free(at); }));
+  std::vector<Eigen::Vector2d> blocked;
+  std::copy_if(places.begin(), places.end(), std::back_inserter(blocked),
+               [&](const Eigen::Vector2d& at) { return !standing.is_free(at); });
+  return blocked;
 }
 
 }  // namespace
@@ -41,15 +46,14 @@ int free_ones(const World& world, const std::vector<Eigen::Vector2d>& places, do
 BlockedRoute blocked_route(const World& world, double eye_height_m) {
   constexpr double low_m = 0.3;
   const std::vector<Eigen::Vector2d> places = places_of(world);
+  const std::vector<Eigen::Vector2d> blocked = blocked_ones(world, places, eye_height_m);
   BlockedRoute route;
   route.places = static_cast<int>(places.size());
-  const Standing standing(world, eye_height_m);
-  for (const Eigen::Vector2d& at : places) {
-    if (standing.is_free(at)) continue;
-    if (route.blocked++ == 0) route.first_m = at;
-  }
-  route.is_too_high = route.places > 0 && route.blocked == route.places && eye_height_m > low_m &&
-                      2 * free_ones(world, places, low_m) >= route.places;
+  route.blocked = static_cast<int>(blocked.size());
+  if (blocked.empty()) return route;
+  route.first_m = blocked[0];
+  route.is_too_high = route.blocked == route.places && eye_height_m > low_m &&
+                      2 * blocked_ones(world, places, low_m).size() <= places.size();
   return route;
 }
 
@@ -67,6 +71,14 @@ RouteFault route_fault(const World& world, double eye_height_m) {
                   "m: a robot of {:g} m radius cannot stand there",
                   100 * route.share(), route.first_m.x(), route.first_m.y(), robot_radius_m),
       "move the route (vernier world route proposes one)", route.share()};
+}
+
+void throw_no_free_position(const World& world, double eye_height_m) {
+  const RouteFault route = route_fault(world, eye_height_m);
+  throw Error("queries",
+              "no free position near the route in 1000 draws" +
+                  (route.fault.empty() ? "" : ": it " + route.fault),
+              route.remedy.empty() ? "move the route through free space" : route.remedy);
 }
 
 }  // namespace vernier::sim::internal

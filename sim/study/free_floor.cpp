@@ -144,11 +144,7 @@ Eigen::Vector2d FreeFloor::draw(RandomStream& draws) const {
     const Eigen::Vector2d place = at(cell) + Eigen::Vector2d(x, y);
     if (reaches(place)) return place;
   }
-  const RouteFault route = route_fault(visibility_.world(), height_m_);
-  throw Error("queries",
-              "no free position near the route in 1000 draws" +
-                  (route.fault.empty() ? "" : ": it " + route.fault),
-              route.remedy.empty() ? "move the route through free space" : route.remedy);
+  throw_no_free_position(visibility_.world(), height_m_);
 }
 
 }  // namespace vernier::sim::internal

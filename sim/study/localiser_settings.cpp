@@ -94,7 +94,7 @@ void SettingsReader::read_views(const toml::table& table, LocaliserOptions& opti
 }
 
 void SettingsReader::read_program(const toml::table& table, ExperimentSettings& settings) const {
-  if (settings.method != "program") return;
+  if (settings.method != "program") return;  // a sweep may set both
   settings.localiser.command =
       command(required(table, "command", "[localiser]"), "localiser.command");
   if (const auto* limit = table.get("time_limit_s")) {

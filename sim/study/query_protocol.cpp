@@ -78,11 +78,7 @@ Pose2D QueryPlaces::draw(std::uint64_t seed, std::uint32_t trial) const {
     const Pose2D query = compose(on_route, {0, across, turn});
     if (is_free_at(query) && is_seen_from({on_route.x_m, on_route.y_m}, query)) return query;
   }
-  const RouteFault route = route_fault(world, eye_height_m_);
-  throw Error("queries",
-              "no free position near the route in 1000 draws" +
-                  (route.fault.empty() ? "" : ": it " + route.fault),
-              route.remedy.empty() ? "move the route through free space" : route.remedy);
+  throw_no_free_position(world, eye_height_m_);
 }
 
 bool QueryPlaces::is_free_at(const Pose2D& pose) const {

@@ -47,10 +47,8 @@ DenseSearch search_of(const DisparityRange& range, int block_px) {
 }
 
 cv::Mat eight_bits(const GreyLevels& grey, const Border& border) {
-  const cv::Mat levels = matrix_of(grey);
-  cv::Mat rounded, wide;
-  levels.convertTo(rounded, CV_8U);
-  cv::copyMakeBorder(rounded, wide, border.sides_px, border.sides_px, border.left_px,
+  cv::Mat wide;
+  cv::copyMakeBorder(bytes_of(grey), wide, border.sides_px, border.sides_px, border.left_px,
                      border.right_px, cv::BORDER_REPLICATE);
   return wide;
 }

@@ -113,11 +113,8 @@ std::vector<std::string> filled(const Command& command,
 }
 
 void write_image(const TemporaryFolder& folder, const std::string& name, const GreyLevels& grey) {
-  const cv::Mat levels = matrix_of(grey);
-  cv::Mat rounded;
-  levels.convertTo(rounded, CV_8U);
   std::vector<uchar> bytes;
-  cv::imencode(".png", rounded, bytes);
+  cv::imencode(".png", bytes_of(grey), bytes);
   folder.write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -24,7 +24,7 @@ struct StereoSegment {
 struct SpaceSegment {
   Eigen::Vector3d a_m, b_m;
   double depth_sigma_m = 0;  ///< of the farther end, from the end-point error of the line fit
-  bool reliable = true;      ///< false if an end is beyond max_depth_m or cannot be unprojected
+  bool reliable = true;      ///< false: beyond max_depth_m, behind a camera, or a pixel has no ray
 };
 
 }  // namespace vernier::stereo

@@ -51,6 +51,7 @@ struct InfoOptions {
   std::string world, plan, rig = "nominal", protocol = "path";
   int poses = 200;
   std::uint64_t seed = 1;
+  double eye_height_m = robot_height_m;
 };
 
 struct ExportOptions {
@@ -109,9 +110,9 @@ struct Aliasing {
 Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   const Visibility visibility(world);
   NoiseFreeViewOptions looking;
-  looking.mount.height_m = robot_height_m;
+  looking.mount.height_m = options.eye_height_m;
   const AliasFinder finder(visibility, read_rig(find_rig(options.rig)).estimate.rig, looking);
-  const QueryPlaces places(visibility, query_protocol(options.protocol), robot_height_m);
+  const QueryPlaces places(visibility, query_protocol(options.protocol), options.eye_height_m);
   Aliasing sum;
   for (int i = 0; i < options.poses; ++i) {
     const Aliases aliases =
@@ -174,7 +175,7 @@ void info(const InfoOptions& options, Session& session) {
   if (world.route.empty()) {
     session.warn(file.string() + ": has no route; vernier world route proposes one");
   }
-  tell_blocked_route(world, file.string(), robot_height_m, session);
+  tell_blocked_route(world, file.string(), options.eye_height_m, session);
   Json json = world_json(world, file.string());
   std::string text = world_text(world, file.string());
   const std::vector<double> lengths = segment_lengths_m(world);
@@ -186,15 +187,14 @@ void info(const InfoOptions& options, Session& session) {
   }
   if (!world.route.empty() && options.poses > 0) {
     const Aliasing aliasing = aliasing_of(world, options);
-    json["aliasing"] = {{"protocol", options.protocol},
-                        {"poses", options.poses},
-                        {"unique_share", aliasing.unique_share},
-                        {"ceiling", aliasing.ceiling},
-                        {"undetermined_share", aliasing.undetermined_share}};
+    json["aliasing"] = {
+        {"protocol", options.protocol}, {"height_m", options.eye_height_m},
+        {"poses", options.poses},       {"unique_share", aliasing.unique_share},
+        {"ceiling", aliasing.ceiling},  {"undetermined_share", aliasing.undetermined_share}};
     text += fmt::format(
-        "  of {} views ({}) {:.1f} % are like no other place's, {:.1f} % leave the "
+        "  of {} views ({}, {:g} m high) {:.1f} % are like no other place's, {:.1f} % leave the "
         "pose open;\n  at best {:.1f} % can be localised (noise-free, guesses counted)\n",
-        options.poses, options.protocol, 100 * aliasing.unique_share,
+        options.poses, options.protocol, options.eye_height_m, 100 * aliasing.unique_share,
         100 * aliasing.undetermined_share, 100 * aliasing.ceiling);
   }
   if (!world.view_sets.empty() && !world.route.empty() && options.poses > 0) {
@@ -286,6 +286,9 @@ void add_world(CLI::App& app, Session& session) {
   info_verb
       ->add_option("--seed", i->seed,
                    "of the views, which are the queries of a study with it and the protocol")
+      ->capture_default_str();
+  info_verb->add_option("--height-m", i->eye_height_m, "height of the robot's camera, metres")
+      ->check(finite_and_positive)
       ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
   check_files_written(*info_verb, {"--plan"});

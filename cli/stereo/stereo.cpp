@@ -134,9 +134,9 @@ StereoResult look(const StereoArguments& options, const StereoInput& input) {
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
-  drop_blank_matches(input, result.edges, result.found);
   result.map = map;
   check_not_swapped(matcher, result.found, input.range, input.exchanged, options.input.left);
+  drop_blank_matches(input, result.edges, result.found);
   result.segments = edge_segments(result.edges);
   SegmentDisparityOptions how;
   how.min_angle_rad = options.min_angle_deg * std::numbers::pi / 180;

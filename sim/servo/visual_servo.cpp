@@ -177,7 +177,7 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
   const Pose& T = rig.rig.T_camera_first[1];
   const Eigen::Vector3d baseline = T.R.transpose() * T.t;
   need(std::abs(baseline.x()) > std::abs(baseline.y()),
-       "the baseline is more upright than level, and stereo cannot place upright lines along it",
+       "the baseline is 45° or more from level, and stereo cannot place upright lines along it",
        "use a rig with cameras side by side");
   const World& world = visibility.world();
   bool known = false;

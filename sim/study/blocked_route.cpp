@@ -74,11 +74,11 @@ RouteFault route_fault(const World& world, double eye_height_m) {
 }
 
 void throw_no_free_position(const World& world, double eye_height_m) {
+  constexpr double cause = 0.5;  // share of the route: 1000 draws leave less than this to chance
   const RouteFault route = route_fault(world, eye_height_m);
-  throw Error("queries",
-              "no free position near the route in 1000 draws" +
-                  (route.fault.empty() ? "" : ": it " + route.fault),
-              route.remedy.empty() ? "move the route through free space" : route.remedy);
+  const std::string fault = "no free position near the route in 1000 draws";
+  if (route.share < cause) throw Error("queries", fault, "move the route through free space");
+  throw Error("queries", fault + ": it " + route.fault, route.remedy);
 }
 
 }  // namespace vernier::sim::internal

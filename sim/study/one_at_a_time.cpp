@@ -131,6 +131,13 @@ std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
   }
   for (const std::string& name : designs.sources) {
     chosen.push_back(source_named(name));
+    if (designs.only && !designs.all_but && !designs.swept &&
+        chosen.back()->value == &SourceSettings::epipolar_reject_deg) {
+      throw Error(designs.sources_place,
+                  "one_at_a_time.sources: " + name +
+                      " adds no error alone: design \"only\" keeps it as it is set in all cells",
+                  "leave it out, or use design \"all_but\" or \"swept\"");
+    }
     if (sources.*chosen.back()->value != 0) continue;
     throw Error(designs.sources_place,
                 "one_at_a_time.sources: sources." + name + " is 0, so it is off everywhere",

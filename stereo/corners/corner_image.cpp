@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "calib/camera.h"
 #include "calib/pose.h"
@@ -18,21 +19,32 @@ namespace vernier::stereo::internal {
 namespace {
 
 constexpr double least_ratio = 1.03;
+constexpr double most_ratio = 8;
 
-/// √det ∂q / ∂p of q = project_r(R unproject_l(p)) in the middle of the left image: how much larger
-/// distant things are in the right image. 1 if the right camera does not look there.
+/// √det ∂q / ∂p of q = project_to(R unproject_from(p)) in the middle of the first camera's image:
+/// how much larger distant things are in the second one's. None if the second does not see there.
+std::optional<double> enlargement(const Camera& from, const Camera& to, const Eigen::Matrix3d& R) {
+  const auto ray = try_unproject(from, 0.5 * from.size_px.cast<double>());
+  if (!ray) return std::nullopt;
+  const Eigen::Vector3d x = R * *ray;
+  if (!(x.z() > 0)) return std::nullopt;
+  ProjectionJacobian first, second;
+  project(from, *ray, first);
+  if (!in_image(to, project(to, x, second))) return std::nullopt;
+  const double areas =
+      (second.point * R.leftCols<2>()).determinant() / first.point.leftCols<2>().determinant();
+  if (!(areas > 0 && std::isfinite(areas))) return std::nullopt;
+  return std::sqrt(areas);
+}
+
+/// How much larger things are in the right image: the geometric mean of what the middles of both
+/// images say, since a camera magnifies off its axis and verged cameras look at each other's side.
 double magnification(const Rig& rig) {
   const Eigen::Matrix3d& R = rig.T_camera_first[1].R;
-  const auto ray = try_unproject(rig.cameras[0], 0.5 * rig.cameras[0].size_px.cast<double>());
-  if (!ray) return 1;
-  const Eigen::Vector3d x = R * *ray;
-  if (!(x.z() > 0)) return 1;
-  ProjectionJacobian left, right;
-  project(rig.cameras[0], *ray, left);
-  project(rig.cameras[1], x, right);
-  const double areas =
-      (right.point * R.leftCols<2>()).determinant() / left.point.leftCols<2>().determinant();
-  return areas > 0 && std::isfinite(areas) ? std::sqrt(areas) : 1;
+  const auto right = enlargement(rig.cameras[0], rig.cameras[1], R);
+  const auto left = enlargement(rig.cameras[1], rig.cameras[0], R.transpose());
+  if (!right || !left) return 1;
+  return std::clamp(std::sqrt(*right / *left), 1 / most_ratio, most_ratio);
 }
 
 /// Smooths an image for its reduction. Returns the factor by which its white noise falls.

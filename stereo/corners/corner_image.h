@@ -34,9 +34,10 @@ struct CornerImages {
 };
 
 /// Both images of a pair. The partner of a left corner may be among the weakest in the right image,
-/// so the right image gets half as many corners more. If distant things in the middle of the left
-/// image are larger in one image by more than 3 %, that image is reduced, since corners are
-/// repeated, and patches alike, at one scale only.
+/// so the right image gets half as many corners more. If distant things are larger in one image by
+/// more than 3 %, that image is reduced (to an eighth at most), since corners are repeated, and
+/// patches alike, at one scale only. Larger in the geometric mean of what is seen in the middle of
+/// the left image and of the right one, so that like cameras that are verged keep their images.
 CornerImages corner_images(const cv::Mat& left,
                            const cv::Mat& right,
                            const Rig& rig,

@@ -12,7 +12,8 @@
 namespace vernier::stereo::internal {
 
 /// A matched corner and what the left image looks like around it
-/// (stereo/corners/patch_descriptor.h).
+/// (stereo/corners/patch_descriptor.h), in the scale at which it was matched: descriptors of two
+/// rigs compare if their left images are reduced alike (stereo/corners/corner_image.h).
 struct DescribedCorner {
   CornerMatch match;
   Eigen::VectorXf descriptor;

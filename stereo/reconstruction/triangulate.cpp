@@ -72,11 +72,11 @@ SpaceSegment triangulate(const Rig& rig,
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
   const Pose& T_right_left = rig.T_camera_first[1];
   SpaceSegment result;
-  bool unprojected = true;
+  bool all_have_rays = true;
   // An erroneous rig may be unable to unproject a pixel; any direction is used then.
   const auto ray_of = [&](const Camera& camera, const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
     if (const auto ray = try_unproject(camera, pixel)) return *ray;
-    unprojected = false;
+    all_have_rays = false;
     result.reliable = false;
     return Eigen::Vector3d::UnitZ();
   };
@@ -88,17 +88,20 @@ SpaceSegment triangulate(const Rig& rig,
   for (int end = 0; end < 2; ++end) {
     rays[end] = ray_of(left, end == 0 ? segment.left.a_px : segment.left.b_px);
     depth[end] = -offset / n.dot(T_right_left.R * rays[end]);
-    if (depth[end] > 0 && depth[end] < options.max_depth_m) continue;
-    result.reliable = false;
-    depth[end] = options.max_depth_m;
+    if (!(depth[end] > 0 && depth[end] < options.max_depth_m)) {
+      result.reliable = false;
+      depth[end] = options.max_depth_m;
+    }
+    const Eigen::Vector3d in_right = depth[end] * T_right_left.R * rays[end] + T_right_left.t;
+    if (!(in_right.z() > 0)) result.reliable = false;
   }
   result.a_m = depth[0] * rays[0];
   result.b_m = depth[1] * rays[1];
   const int farther = depth[1] > depth[0] ? 1 : 0;
   result.depth_sigma_m =
-      unprojected ? options.endpoint_sigma_px *
-                        depth_sigma(rig, rays[farther], depth[farther], n, normal_of(segment.left))
-                  : std::numeric_limits<double>::infinity();
+      all_have_rays ? options.endpoint_sigma_px * depth_sigma(rig, rays[farther], depth[farther], n,
+                                                              normal_of(segment.left))
+                    : std::numeric_limits<double>::infinity();
   return result;
 }
 

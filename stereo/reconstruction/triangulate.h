@@ -14,7 +14,8 @@ namespace vernier::stereo::internal {
 
 struct TriangulationOptions {
   double endpoint_sigma_px = 0.15;  ///< of either line across itself, for depth_sigma_m
-  double max_depth_m = 30;  ///< an end at or beyond this depth, or behind the rig, is unreliable
+  double max_depth_m =
+      30;  ///< an end at or beyond this depth, or behind either camera, is unreliable
 };
 
 /// Triangulates the edge in space from a matched pair of image lines.
@@ -27,8 +28,8 @@ struct TriangulationOptions {
 /// for either end of the left line: exact for any pose of the rig and any distortion, since end
 /// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are placed at that
 /// depth and the segment is marked unreliable, as it is if a pixel cannot be unprojected with this
-/// rig. Lines as planes through the cameras: Hartley and Zisserman, "Multiple View Geometry" (2nd
-/// ed., 2004), section 15.4.
+/// rig or an end is not in front of the right camera. Lines as planes through the cameras: Hartley
+/// and Zisserman, "Multiple View Geometry" (2nd ed., 2004), section 15.4.
 ///
 /// The depth error of the farther end comes from errors of σ pixels of both lines across
 /// themselves. With ∇_l and ∇_r the gradients of n·(R λ r + T) by the pixel of the left end and by
@@ -37,7 +38,8 @@ struct TriangulationOptions {
 ///     σ_λ = σ √((∇_l·ν)² + |∇_r|²) / |n·(R r)|
 ///
 /// which is Z² √2 σ / (f b sin φ) for equal cameras side by side and a line at φ to the baseline.
-/// It is infinite if a pixel cannot be unprojected. Throws Error unless the rig has two cameras.
+/// It is infinite if a pixel cannot be unprojected or that end is behind the right camera. Throws
+/// Error unless the rig has two cameras.
 SpaceSegment triangulate(const Rig& rig,
                          const StereoSegment& segment,
                          const TriangulationOptions& options = {});

@@ -156,7 +156,7 @@ TEST(VisualServo, RefusesCamerasAboveEachOther) {
   rig.rig.T_camera_first[1].t = {0, -0.12, 0};
   EXPECT_NE(error_message([&] {
               ServoExperiment(test::small_office_visibility(), rig, exact_robot(), {});
-            }).find("the baseline is more upright than level"),
+            }).find("the baseline is 45° or more from level"),
             std::string::npos);
 }
 

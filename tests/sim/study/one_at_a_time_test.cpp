@@ -163,6 +163,10 @@ TEST(OneAtATime, RefusesWhatItCannotMake) {
             std::string::npos);
   EXPECT_NE(fault("designs = [\"only\"]\nsources = [\"clutter\"]\n").find("it is off everywhere"),
             std::string::npos);
+  const std::string named = "sources = [\"edge_loss\", \"epipolar_reject_deg\"]\n";
+  EXPECT_NE(fault("designs = [\"only\"]\n" + named).find("keeps it as it is set in all cells"),
+            std::string::npos);
+  EXPECT_EQ(cells("[one_at_a_time]\ndesigns = [\"only\", \"all_but\"]\n" + named).size(), 5u);
   EXPECT_NE(fault("designs = [\"swept\"]\nfactors = [1]\n").find("is no factor"),
             std::string::npos);
   EXPECT_NE(fault("designs = [\"swept\"]\nsources = [\"edge_loss\"]\nfactors = [50]\n")

@@ -195,6 +195,9 @@ TEST_P(CornersOfUnlikeCameras, AreMatchedAsWell) {
   Rig rig = small_rig();
   unlike.change(rig);
   const Pair made(rig, 8);  // noise that outweighs what interpolation does
+  const double larger = unlike.left_px_per_right_px;
+  EXPECT_NEAR(made.image.right.reduction, std::max(1.0, larger), 0.02) << unlike.name;
+  EXPECT_NEAR(made.image.left.reduction, std::max(1.0, 1 / larger), 0.02) << unlike.name;
   const EpipolarBand band(rig, Pair::covariance(rig), {.nearest_m = 1});
   const auto matches = match_corners(made.image.left, made.image.right, band,
                                      {.min_aligned_score = 0.8, .sigma_floor_px = 0});

@@ -72,6 +72,20 @@ TEST(TriangulateDoubt, NegativeDisparityIsUnreliableAndFinite) {
   EXPECT_EQ(s.a_m.z(), TriangulationOptions{}.max_depth_m);
 }
 
+TEST(TriangulateDoubt, BehindTheRightCameraIsUnreliable) {
+  Rig rig = test::stereo_rig();
+  rig.T_camera_first[1].t.z() = -3;  // the right camera stands 3 m further on
+  const Eigen::Vector3d a(0.1, -0.4, 2), b(0.1, 0.4, 2);
+  const Pose& T = rig.T_camera_first[1];
+  // The plane through the right camera and the line cuts its image too, in front of it.
+  const ImageSegment right{project(rig.cameras[1], -(T * a)), project(rig.cameras[1], -(T * b))};
+  const SpaceSegment s = triangulate(rig, {seen_by(rig, 0, a, b), right, 0});
+  EXPECT_LT((s.a_m - a).norm(), 1e-9);
+  EXPECT_LT((s.b_m - b).norm(), 1e-9);
+  EXPECT_FALSE(s.reliable);
+  EXPECT_TRUE(std::isinf(s.depth_sigma_m));
+}
+
 TEST(TriangulateDoubt, DepthSigmaGrowsWithTheSquareOfDepthAndForFlatLines) {
   const Rig rig = test::stereo_rig();
   const auto sigma = [&](double depth, double slope) {

@@ -123,12 +123,14 @@ std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::
           if (!(miss.norm() > 1e-15 * (1 + target.norm()))) break;
           Eigen::Vector2d step = d.by_x.inverse() * miss;
           // Halve the step until it helps, so that a start beyond the fold does not diverge.
-          for (int halving = 0; halving < 20; ++halving, step *= 0.5) {
+          bool is_closer = false;
+          for (int halving = 0; halving < 20 && !is_closer; ++halving) {
             d = m.distort(x - step, a + core_parameter_count);
-            if ((d.x - target).norm() < miss.norm()) break;
+            is_closer = (d.x - target).norm() < miss.norm();
+            if (!is_closer) step *= 0.5;
           }
           x -= step;
-          if (step.norm() < 1e-16 * (1 + x.norm())) break;
+          if (!is_closer || step.norm() < 1e-16 * (1 + x.norm())) break;  // at rounding, or a fold
         }
         d = m.distort(x, a + core_parameter_count);
         const bool found = (d.x - target).norm() < 1e-10;

@@ -4,11 +4,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <vector>
 
 #include "calib/projection_uncertainty.h"
 
@@ -141,13 +143,20 @@ class PointFit {
         scale_(options.integration_scale_px),
         half_(tensor.window.rows / 2 + 1),
         vertex_{vertex(1, 0), vertex(0, 1)},
-        centre_(peak.x + vertex_[0].offset, peak.y + vertex_[1].offset) {}
+        centre_(peak.x + vertex_[0].offset, peak.y + vertex_[1].offset) {
+    for (int axis = 0; axis < 2; ++axis) {
+      for (int i = -half_; i <= half_; ++i) {
+        const double from_centre = i - vertex_[axis].offset;
+        weights_[axis].push_back(std::exp(-from_centre * from_centre / (2 * scale_ * scale_)));
+      }
+    }
+  }
 
   std::optional<Eigen::Vector2d> point(double max_shift_px) {
     Eigen::Matrix2d M = Eigen::Matrix2d::Zero();
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
-    for_window([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
-      const double w = weight(from_centre);
+    for_window([&](int i, int j, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
+      const double w = weight(i, j);
       M += w * g * g.transpose();
       b += w * g * g.dot(from_centre);
     });
@@ -169,12 +178,13 @@ class PointFit {
       by_gy[a] = cv::Mat::zeros(size, size, CV_32F);
     }
     const Eigen::Matrix2d by_centre = point_by_centre();
+    const ResponseSlopes slopes = response_slopes();
     for_window([&](int i, int j, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
       const Eigen::Vector2d to = from_centre - shift_;
       const Eigen::Matrix2d at_fixed_centre =
-          weight(from_centre) * inverse_ *
-          (g * to.transpose() + g.dot(to) * Eigen::Matrix2d::Identity());
-      const Eigen::Matrix2d by_g = at_fixed_centre + by_centre * centre_by_gradient(i, j, g);
+          weight(i, j) * inverse_ * (g * to.transpose() + g.dot(to) * Eigen::Matrix2d::Identity());
+      const Eigen::Matrix2d by_g =
+          at_fixed_centre + by_centre * centre_by_gradient(slopes, i, j, g);
       for (int a = 0; a < 2; ++a) {
         by_gx[a].at<float>(j + half_ + margin, i + half_ + margin) = static_cast<float>(by_g(a, 0));
         by_gy[a].at<float>(j + half_ + margin, i + half_ + margin) = static_cast<float>(by_g(a, 1));
@@ -199,36 +209,51 @@ class PointFit {
             r.at<float>(peak_.y + dy, peak_.x + dx)};
   }
 
-  double weight(const Eigen::Vector2d& from_centre) const {
-    return std::exp(-from_centre.squaredNorm() / (2 * scale_ * scale_));
-  }
+  /// Of the window around its centre, at the peak's pixel plus (i, j): a product of two factors.
+  double weight(int i, int j) const { return weights_[0][i + half_] * weights_[1][j + half_]; }
 
   /// ∂p / ∂c of the window's centre c: M⁻¹ Σ (w / s²) g gᵀ (x − p) (x − c)ᵀ.
   Eigen::Matrix2d point_by_centre() const {
     Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-    for_window([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
-      sum += weight(from_centre) / (scale_ * scale_) * g.dot(from_centre - shift_) * g *
+    for_window([&](int i, int j, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
+      sum += weight(i, j) / (scale_ * scale_) * g.dot(from_centre - shift_) * g *
              from_centre.transpose();
     });
     return inverse_ * sum;
   }
 
-  /// ∂c / ∂g of the gradient at the peak's pixel (i, j), through the responses that enter the
-  /// parabolas, with ∂R = (yy − 2k tr) ∂xx + (xx − 2k tr) ∂yy − 2 xy ∂xy.
-  Eigen::Matrix2d centre_by_gradient(int i, int j, const Eigen::Vector2d& g) const {
-    Eigen::Matrix2d by_gradient = Eigen::Matrix2d::Zero();
+  /// ∂c / ∂R times ∂R / ∂g = w (S g)ᵀ of the three responses R in a row or column that enter a
+  /// parabola; with ∂R = (yy − 2k tr) ∂xx + (xx − 2k tr) ∂yy − 2 xy ∂xy.
+  using ResponseSlopes = std::array<std::array<Eigen::Matrix2d, 3>, 2>;
+  ResponseSlopes response_slopes() const {
+    ResponseSlopes slopes;
     for (int axis = 0; axis < 2; ++axis) {
       for (int step = -1; step <= 1; ++step) {
-        const int dx = axis == 0 ? step : 0, dy = axis == 0 ? 0 : step;
-        const double w = window_at(i - dx) * window_at(j - dy);
-        const int x = peak_.x + dx, y = peak_.y + dy;
+        const int x = peak_.x + (axis == 0 ? step : 0), y = peak_.y + (axis == 0 ? 0 : step);
         const double xx = tensor_.xx.at<float>(y, x), yy = tensor_.yy.at<float>(y, x);
         const double xy = tensor_.xy.at<float>(y, x), edge = 2 * tensor_.k * (xx + yy);
-        const Eigen::RowVector2d response_by_g(2 * w * ((yy - edge) * g.x() - xy * g.y()),
-                                               2 * w * ((xx - edge) * g.y() - xy * g.x()));
-        by_gradient.row(axis) += vertex_[axis].by_values[step + 1] * response_by_g;
+        slopes[axis][step + 1] << yy - edge, -xy, -xy, xx - edge;
+        slopes[axis][step + 1] *= 2 * vertex_[axis].by_values[step + 1];
       }
     }
+    return slopes;
+  }
+
+  /// ∂c / ∂g of the gradient at the peak's pixel plus (i, j).
+  Eigen::Matrix2d centre_by_gradient(const ResponseSlopes& slopes,
+                                     int i,
+                                     int j,
+                                     const Eigen::Vector2d& g) const {
+    const double at_i = window_at(i), at_j = window_at(j);
+    Eigen::Matrix2d by_gradient;
+    by_gradient.row(0) =
+        ((window_at(i + 1) * at_j) * (slopes[0][0] * g) + (at_i * at_j) * (slopes[0][1] * g) +
+         (window_at(i - 1) * at_j) * (slopes[0][2] * g))
+            .transpose();
+    by_gradient.row(1) =
+        ((at_i * window_at(j + 1)) * (slopes[1][0] * g) + (at_i * at_j) * (slopes[1][1] * g) +
+         (at_i * window_at(j - 1)) * (slopes[1][2] * g))
+            .transpose();
     return by_gradient;
   }
 
@@ -258,6 +283,7 @@ class PointFit {
   double scale_;
   int half_;
   Vertex vertex_[2];
+  std::vector<double> weights_[2];  ///< of columns and rows of the window
   Eigen::Vector2d centre_, shift_;  ///< of the window, and from it to the point
   Eigen::Matrix2d inverse_;         ///< M⁻¹
 };

@@ -29,7 +29,7 @@ def camera(name, size=(480, 480), f_px=420.0, roll_deg=0.0, yaw_deg=0.0, centre_
     if centre_m is not None:
         # R = roll(-a) yaw(-b): a point of the left frame to this camera's frame
         a, b = math.radians(roll_deg) / 2, math.radians(yaw_deg) / 2
-        w, x, y, z = math.cos(a) * math.cos(b), math.sin(a) * math.sin(b), -math.cos(a) * math.sin(b), \
+        w, x, y, z = math.cos(a) * math.cos(b), -math.sin(a) * math.sin(b), -math.cos(a) * math.sin(b), \
             -math.sin(a) * math.cos(b)
         length = math.sqrt(x * x + y * y + z * z)
         angle = 2 * math.atan2(length, w)

@@ -47,8 +47,9 @@ struct LocalisationAnswer {
   std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
   /// The turn of a further look that tells the modes apart best; 0 if there is nothing to tell.
   double next_turn_rad = 0;
-  std::string failure;        ///< why, if it failed
-  double program_cpu_ms = 0;  ///< CPU time that another process spent on it
+  std::string failure;  ///< why, if it failed
+  /// CPU time that another process spent on it, to a tick of the system's scheduler (some ms).
+  double program_cpu_ms = 0;
 };
 
 /// Estimates where a view was taken. Implementations keep no state between queries.

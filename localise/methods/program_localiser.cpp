@@ -112,16 +112,20 @@ LocalisationAnswer ProgramLocaliser::localise(const PlaceView& query) const {
 LocalisationAnswer ProgramLocaliser::localise_looks(std::span<const Look> looks) const {
   if (looks.empty()) throw Error("looks", "there are none", "give at least one");
   LocalisationAnswer answer;
-  double before_s = 0;
+  // The system counts a program that still runs by the ticks of its scheduler: what it had not
+  // counted at an answer counts for the next one.
   const auto question = [&] {
-    before_s = program_.cpu_s();
+    if (!counted_cpu_s_) counted_cpu_s_ = program_.cpu_s();
     return Json{{"looks", looks_json(looks)}}.dump() + "\n";
   };
   const auto take = [&](std::string_view line) { answer = parse_answer(line, map_); };
   if (program_.ask(question, take)) {
-    answer.program_cpu_ms = 1e3 * (program_.cpu_s() - before_s);
+    const double now_s = program_.cpu_s();
+    answer.program_cpu_ms = 1e3 * (now_s - *counted_cpu_s_);
+    counted_cpu_s_ = now_s;
     return answer;
   }
+  counted_cpu_s_.reset();
   LocalisationAnswer failed;
   failed.status = LocalisationStatus::failed;
   failed.failure = program_.failure();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -27,6 +28,7 @@ class ProgramLocaliser : public Localiser {
   const TopologicalMap& map_;
   // The program is all the state there is; what it answers should depend on the query alone.
   mutable vernier::internal::AnsweringProgram program_;
+  mutable std::optional<double> counted_cpu_s_;  ///< CPU time up to the last answer
 };
 
 /// Parses an answer. Throws Error for what is not one.

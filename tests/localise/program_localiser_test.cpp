@@ -91,13 +91,19 @@ TEST(ProgramLocaliser, WorksAsTheManualSays) {
   const TopologicalMap map = five_rooms();
   const auto localiser = make_localiser(
       "program", map, running("python3 " VERNIER_SOURCE_DIR "/docs/examples/own_localiser.py"));
+  double cpu_ms = 0;
   for (int i = 0; i < 5; ++i) {
     const LocalisationAnswer answer = localiser->localise(map.nodes[i].view);
     EXPECT_EQ(answer.status, LocalisationStatus::answered) << answer.failure;
     EXPECT_EQ(answer.node, i);
     EXPECT_EQ(answer.pose.x_m, 10.0 * i);
-    EXPECT_GT(answer.program_cpu_ms, 0);
+    EXPECT_GE(answer.program_cpu_ms, 0);
+    cpu_ms += answer.program_cpu_ms;
   }
+  for (int i = 0; i < 200 && cpu_ms == 0; ++i) {  // until the system has counted a tick
+    cpu_ms += localiser->localise(map.nodes[0].view).program_cpu_ms;
+  }
+  EXPECT_GT(cpu_ms, 0);
   EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::no_match);
 }
 

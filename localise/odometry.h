@@ -64,7 +64,10 @@ struct MotionStep {
   /// calibration is common to all steps of a trajectory.
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
   std::vector<CornerLink> inliers;
-  int links = 0;    ///< that were given
+  int links = 0;  ///< that were given
+  /// In how much of the image links agree on another motion, relative to the inliers: cells of 12 x
+  /// 12. Above 1/2 it is not clear which of the two is the rig's: something large moves.
+  double other_motion = 0;
   double chi2 = 0;  ///< of the inliers, by their covariances
   int dof = 0;      ///< five for each inlier, less six
 };
@@ -73,7 +76,7 @@ struct MotionStep {
 ///
 ///  1. consensus: motions of three links each, drawn until three right ones are among them with the
 ///     wanted confidence (Fischler and Bolles 1981); the best has the least sum of truncated
-///     squares (MSAC, Torr and Zisserman 2000) of
+///     squares (MSAC, Torr and Zisserman 2000), each cell of the image counting once, of
 ///
 ///         d² = rᵀ (J C Jᵀ + C_z)⁻¹ r,   r = z_to − π(T⁻¹ x)
 ///

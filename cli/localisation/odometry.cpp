@@ -31,6 +31,7 @@ namespace {
 /// Figures of one or more drives, summed for their means.
 struct DriveFigures {
   int steps = 0, found = 0;
+  int ambiguous = 0;  ///< with another motion in more than half as much of the image
   double links = 0, inliers = 0, chi2 = 0, dof = 0, cpu_s = 0;
   std::vector<double> nees;
   std::vector<TrajectoryDrift> drifts;
@@ -65,6 +66,7 @@ OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& 
     const auto& step = path.steps[i];
     if (!step) continue;
     ++figures.found;
+    figures.ambiguous += step->other_motion > 0.5;
     figures.links += step->links;
     figures.inliers += static_cast<double>(step->inliers.size());
     figures.chi2 += step->chi2;
@@ -142,6 +144,14 @@ void report(const DriveFigures& figures, const OdometryOptions& options, Session
         fmt::format("{} of {} steps were not found, too few corners agree: the motion before them "
                     "was repeated",
                     figures.steps - figures.found, figures.steps));
+  }
+  json["ambiguous_steps"] = figures.ambiguous;
+  if (figures.ambiguous > 0) {
+    session.add_trust_warning(fmt::format(
+        "in {} of {} steps corners in a large part of the image agree on another motion: "
+        "something large moves there, and which of the two motions is the rig's is not "
+        "known",
+        figures.ambiguous, figures.steps));
   }
   const double found = std::max(1, figures.found);
   json["links_per_step"] = figures.links / found;

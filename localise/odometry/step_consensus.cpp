@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -92,27 +93,45 @@ std::optional<Pose> motion_of(const Rig& rig,
   return refined->T_from_to;
 }
 
-/// Draws needed to have so many right links with the wanted confidence.
-double draws_needed(std::size_t agreeing,
-                    std::size_t links,
-                    std::size_t drawn_links,
-                    double confidence) {
-  const double share = static_cast<double>(agreeing) / static_cast<double>(links);
+/// Draws needed for right links only with the wanted confidence, of which each is by `share`.
+double draws_needed(double share, std::size_t drawn_links, double confidence) {
   const double all_right = std::pow(share, static_cast<int>(drawn_links));
   if (all_right >= 1) return 1;
   if (all_right <= 0) return std::numeric_limits<double>::infinity();
   return std::log1p(-confidence) / std::log1p(-all_right);
 }
 
-/// Different ones of n.
-void draw_few(std::size_t n, RandomStream& draws, std::vector<std::size_t>& chosen) {
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(k);
-    do {
-      chosen[k] = draws.below(static_cast<std::uint32_t>(n));
-    } while (std::find(chosen.begin(), end, chosen[k]) != end);
+/// Draws links with probabilities as their weights.
+class LinkDraws {
+ public:
+  LinkDraws(std::size_t links, const std::vector<double>& weights) : links_(links) {
+    for (const double weight : weights) {
+      sums_.push_back(weight + (sums_.empty() ? 0 : sums_.back()));
+    }
   }
-}
+
+  double total() const { return sums_.empty() ? static_cast<double>(links_) : sums_.back(); }
+
+  /// Different ones.
+  void draw(RandomStream& draws, std::vector<std::size_t>& chosen) const {
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(k);
+      do {
+        chosen[k] = one(draws);
+      } while (std::find(chosen.begin(), end, chosen[k]) != end);
+    }
+  }
+
+ private:
+  std::size_t one(RandomStream& draws) const {
+    if (sums_.empty()) return draws.below(static_cast<std::uint32_t>(links_));
+    const auto at = std::upper_bound(sums_.begin(), sums_.end(), draws.uniform(0, sums_.back()));
+    return std::min(static_cast<std::size_t>(at - sums_.begin()), links_ - 1);
+  }
+
+  std::size_t links_;
+  std::vector<double> sums_;  ///< of the weights up to each link; empty: equal weights
+};
 
 }  // namespace
 
@@ -173,6 +192,24 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
   return found;
 }
 
+std::vector<double> weights_by_cell(const Rig& rig, const std::vector<TriangulatedLink>& links) {
+  constexpr int cells = 12;  // along each side, as corners are spread
+  const auto cell = [&](const TriangulatedLink& link) {
+    const Eigen::Vector2d size_px = rig.cameras[0].size_px.cast<double>();
+    const Eigen::Array2d at = cells * (link.corner.from_px.head<2>().array() + 0.5);
+    const Eigen::Array2i index = (at / size_px.array()).floor().cast<int>().max(0).min(cells - 1);
+    return index.y() * cells + index.x();
+  };
+  std::array<int, cells * cells> in_cell{};
+  for (const TriangulatedLink& link : links) ++in_cell[static_cast<std::size_t>(cell(link))];
+  std::vector<double> weights;
+  weights.reserve(links.size());
+  for (const TriangulatedLink& link : links) {
+    weights.push_back(1.0 / in_cell[static_cast<std::size_t>(cell(link))]);
+  }
+  return weights;
+}
+
 std::optional<AgreedMotion> consensus(const Rig& to_rig,
                                       const std::vector<TriangulatedLink>& links,
                                       const StepOptions& options,
@@ -182,27 +219,30 @@ std::optional<AgreedMotion> consensus(const Rig& to_rig,
   std::optional<AgreedMotion> best;
   double least = std::numeric_limits<double>::infinity(), needed = options.max_draws;
   std::vector<std::size_t> chosen(minimal.links);
+  const LinkDraws links_drawn(links.size(), minimal.weights);
+  const auto weight = [&](std::size_t link) {
+    return minimal.weights.empty() ? 1 : minimal.weights[link];
+  };
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(options.max_draws) && i < needed; ++i) {
     RandomStream draws({.seed = options.seed,
                         .trial = options.step,
                         .feature = i,
                         .source = static_cast<std::uint32_t>(minimal.source)});
-    draw_few(links.size(), draws, chosen);
+    links_drawn.draw(draws, chosen);
     const auto motion = minimal.solve(chosen);
     if (!motion) continue;
     MotionDistance distance(to_rig, *motion);
-    double sum = 0;
-    std::size_t agreeing = 0;
-    for (const TriangulatedLink& link : links) {
-      const double d2 = distance(link);
-      agreeing += d2 <= gate;
-      sum += std::min(d2, gate);
+    double sum = 0, agreeing = 0;
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      const double d2 = distance(links[k]);
+      if (d2 <= gate) agreeing += weight(k);
+      sum += weight(k) * std::min(d2, gate);
       if (sum >= least) break;
     }
     if (sum >= least) continue;
     least = sum;
     best = AgreedMotion{*motion, sum};
-    needed = draws_needed(agreeing, links.size(), minimal.links, options.confidence);
+    needed = draws_needed(agreeing / links_drawn.total(), minimal.links, options.confidence);
   }
   return best;
 }
@@ -210,10 +250,11 @@ std::optional<AgreedMotion> consensus(const Rig& to_rig,
 std::optional<Pose> consensus(const Rig& rig,
                               const std::vector<TriangulatedLink>& links,
                               const StepOptions& options) {
-  const auto agreed = consensus(
-      rig, links, options,
-      {drawn, DrawSource::odometry_links,
-       [&](std::span<const std::size_t> chosen) { return motion_of(rig, links, chosen); }});
+  const auto agreed =
+      consensus(rig, links, options,
+                {drawn, DrawSource::odometry_links,
+                 [&](std::span<const std::size_t> chosen) { return motion_of(rig, links, chosen); },
+                 weights_by_cell(rig, links)});
   if (!agreed) return std::nullopt;
   return agreed->T_from_to;
 }
@@ -233,6 +274,18 @@ std::vector<int> agreeing_links(const Rig& to_rig,
     if (distance(links[i]) <= gate) agreeing.push_back(static_cast<int>(i));
   }
   return agreeing;
+}
+
+std::vector<TriangulatedLink> links_beyond(const Rig& to_rig,
+                                           const std::vector<TriangulatedLink>& links,
+                                           const Pose& T_from_to,
+                                           double least) {
+  MotionDistance distance(to_rig, T_from_to);
+  std::vector<TriangulatedLink> beyond;
+  for (const TriangulatedLink& link : links) {
+    if (distance(link) > least) beyond.push_back(link);
+  }
+  return beyond;
 }
 
 double support_of(const Rig& to_rig,

@@ -63,11 +63,17 @@ struct MinimalMotion {
   vernier::internal::DrawSource source;  ///< of the draws of links
   /// Of links with these indices; none if they determine no motion.
   std::function<std::optional<Pose>(std::span<const std::size_t>)> solve;
+  std::vector<double> weights = {};  ///< of the links, in draws and sums; empty: equal
 };
+
+/// Of each link 1 / n, with n the links in its cell of 12 x 12 of the left image at the earlier
+/// moment, so that the sum is the number of cells with links: what covers most of the image counts,
+/// not what has most texture.
+std::vector<double> weights_by_cell(const Rig& rig, const std::vector<TriangulatedLink>& links);
 
 struct AgreedMotion {
   Pose T_from_to;
-  double sum = 0;  ///< of the squares of all links, each at most the gate (MSAC)
+  double sum = 0;  ///< of the weighted squares of all links, each at most the gate (MSAC)
 };
 
 /// The motion on which most links agree, of those drawn by `minimal`; std::nullopt if there is
@@ -77,7 +83,7 @@ std::optional<AgreedMotion> consensus(const Rig& to_rig,
                                       const StepOptions& options,
                                       const MinimalMotion& minimal);
 
-/// The same in space, of three links.
+/// The same in space, of three links weighed by cell.
 std::optional<Pose> consensus(const Rig& rig,
                               const std::vector<TriangulatedLink>& links,
                               const StepOptions& options);
@@ -90,6 +96,12 @@ std::vector<int> agreeing_links(const Rig& to_rig,
                                 const std::vector<TriangulatedLink>& links,
                                 const Pose& T_from_to,
                                 double gate_probability);
+
+/// The links whose squared distance from a motion exceeds `least`.
+std::vector<TriangulatedLink> links_beyond(const Rig& to_rig,
+                                           const std::vector<TriangulatedLink>& links,
+                                           const Pose& T_from_to,
+                                           double least);
 
 /// How much the links support a motion: the sum of 1 - d² / gate over those that agree.
 double support_of(const Rig& to_rig,

@@ -65,7 +65,9 @@ std::optional<MotionStep> linked_step(const Rig& rig,
   }
   if (!found) return std::nullopt;
   auto again = near(found->T_from_to, found_window_px);
-  return again && again->inliers.size() >= found->inliers.size() ? again : found;
+  if (!again || again->inliers.size() < found->inliers.size()) return found;
+  again->other_motion = found->other_motion;  // links near the motion agree with no other
+  return again;
 }
 
 }  // namespace

@@ -148,6 +148,39 @@ TEST(Odometry, WrongLinksAreLeftOut) {
   EXPECT_LT(error_of(step->T_from_to).tail<3>().norm(), 0.01);
 }
 
+/// Adds corners of something that moves by itself, in a part of the image from its middle on.
+void add_mover(const Rig& rig, int corners, double share_of_side, Scene& scene) {
+  vernier::internal::RandomStream points({.seed = 5}), draws({.seed = 6});
+  const Pose moves{Eigen::Matrix3d::Identity(), Vector3d(0.3, 0.1, 0)};
+  const Pose back = motion.inverse();
+  for (int i = 0; i < corners; ++i) {
+    const double z = points.uniform(4, 5);
+    const Vector3d x{z * points.uniform(0, share_of_side), z * points.uniform(0, share_of_side), z};
+    const auto k = static_cast<int>(scene.from.size());
+    scene.from.push_back(corner_at(rig, x, 0.2, draws));
+    scene.to.push_back(corner_at(rig, back * (moves * x), 0.2, draws));
+    scene.links.push_back({k, k});
+  }
+}
+
+TEST(Odometry, WhatCoversMostOfTheImageStands) {
+  const Rig rig = example_rig();
+  Scene scene = scene_of(rig, 60, 0.2, 1);
+  const auto other_motion = [&] {
+    const auto step = estimate_step(rig, scene.from, scene.to, scene.links);
+    EXPECT_TRUE(step);
+    EXPECT_LT(error_of(step->T_from_to).tail<3>().norm(), 0.01);
+    return step->other_motion;
+  };
+  EXPECT_EQ(other_motion(), 0);
+  add_mover(rig, 300, 0.15, scene);  // five times as many corners, in a fortieth of the image
+  const double of_little = other_motion();
+  EXPECT_GT(of_little, 0);
+  EXPECT_LT(of_little, 0.3);
+  add_mover(rig, 300, 0.42, scene);  // a fifth of the image
+  EXPECT_GT(other_motion(), 0.5);
+}
+
 TEST(Odometry, TheSameToTheBit) {
   const Rig rig = example_rig();
   const Scene scene = scene_of(rig, 50, 0.3, 2);

@@ -85,7 +85,10 @@ struct MotionStep {
 ///  2. refinement: the motion and the points of all links within the gate, jointly, by
 ///     Levenberg and Marquardt on the eight pixel coordinates of each, the points eliminated (Schur
 ///     complement); the gate is applied again until the links stay the same;
-///  3. covariance: the inverse of the reduced normal equations, times χ² / dof, 1e-6 at least.
+///  3. covariance: the inverse of the reduced normal equations, times χ² / dof, 1e-6 at least, as
+///  far
+///     as the residuals of single links do not say otherwise (HC3,
+///     localise/odometry/step_refinement.h).
 ///
 /// std::nullopt if fewer than min_inliers links agree. Throws Error unless the rig has two cameras,
 /// the links are indices of corners, and the options are in range.

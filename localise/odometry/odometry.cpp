@@ -113,14 +113,10 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   for (const int i : chosen) step.inliers.push_back(placed[static_cast<std::size_t>(i)].link);
   step.chi2 = refined.total_chi2();
   step.dof = 5 * static_cast<int>(chosen.size()) - 6;
-  const Eigen::Matrix<double, 6, 6> inverse =
-      information.solve(Eigen::Matrix<double, 6, 6>::Identity());
-  if (!inverse.allFinite()) return std::nullopt;
-  // Below, what remains of exact corners is the rounding of the minimum.
-  constexpr double least_variance_factor = 1e-6;
-  step.covariance =
-      std::max(step.chi2 / step.dof, least_variance_factor) * 0.5 * (inverse + inverse.transpose());
-  if (options.with_rig) step.by_rig = step_by_rig(rig, corners_at(placed, chosen), refined);
+  const std::vector<LinkedCorner> agreeing = corners_at(placed, chosen);
+  step.covariance = step_covariance(rig, agreeing, refined);
+  if (!step.covariance.allFinite()) return std::nullopt;
+  if (options.with_rig) step.by_rig = step_by_rig(rig, agreeing, refined);
   return step;
 }
 

@@ -3,6 +3,7 @@
 #include "localise/odometry/step_refinement.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -190,6 +191,32 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
   for (const LinearisedCorner& corner : state.corners) refined.chi2.push_back(corner.chi2());
   refined.x_from_m = std::move(state.x_from_m);
   return refined;
+}
+
+Matrix6d step_covariance(const Rig& rig,
+                         const std::vector<LinkedCorner>& corners,
+                         const RefinedStep& step) {
+  constexpr double prior_corners = 20;            // n₀
+  constexpr double least_variance_factor = 1e-6;  // of exact corners, whose residuals are rounding
+  const auto n = static_cast<double>(corners.size());
+  const double factor = std::max(step.total_chi2() / (5 * n - 6), least_variance_factor);
+  const Matrix6d& H = step.information;
+  const Matrix6d inverse = solve_symmetric(H, Eigen::MatrixXd(Matrix6d::Identity()));
+  Matrix6d scatter = Matrix6d::Zero();
+  StepProjectors projectors({rig, rig});
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    LinearisedCorner c;
+    if (!linearise(projectors, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
+    const EliminatedPoint p(c, 0);
+    const Matrix6d M = c.by_motion.transpose() * c.by_motion - p.W * p.V.solve(p.W.transpose());
+    const Vector6d Qr = c.by_motion.transpose() * c.residual - p.W * p.V.solve(p.gradient);
+    const Vector6d g = (Matrix6d::Identity() - M * inverse).partialPivLu().solve(Qr);
+    // A corner without which the motion is not determined has no residual to judge it by.
+    scatter += g.allFinite() ? Matrix6d(g * g.transpose()) : Matrix6d(factor * M);
+  }
+  const Matrix6d middle = (prior_corners * factor * H + n * scatter) / (prior_corners + n);
+  const Matrix6d covariance = inverse * middle * inverse;
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,

@@ -46,6 +46,20 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
                                        int max_iterations,
                                        const FloorBasis* within = nullptr);
 
+/// Covariance of a refined motion in the tangent of retract() (rad, m), from the residuals:
+///
+///     C = H⁻¹ (n₀ χ²/dof H + n Σ g gᵀ) H⁻¹ / (n₀ + n),   g = (I − M H⁻¹)⁻¹ Aᵀ Q r
+///
+/// with r the whitened residuals of a corner, A their derivatives by the motion, Q what eliminates
+/// its point, M = Aᵀ Q A and H = Σ M. The second part is the sandwich with each corner left out
+/// once (HC3: MacKinnon and White, J. Econometrics 29, 1985): it holds whatever the noise of a
+/// corner is made of, while χ²/dof, the first, holds only if that is as stated but for one factor.
+/// A motion sideways is as uncertain as what shifts in both eyes alike, which the residuals hardly
+/// show. n₀ = 20 corners' worth of the first keep the second sound for few corners.
+Eigen::Matrix<double, 6, 6> step_covariance(const Rig& rig,
+                                            const std::vector<LinkedCorner>& corners,
+                                            const RefinedStep& step);
+
 /// Derivative of the minimum by the rig's parameters, with the measurements fixed: by the implicit
 /// function theorem, to first order in the residuals.
 Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,

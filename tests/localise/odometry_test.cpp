@@ -114,9 +114,8 @@ TEST(Odometry, CovarianceIsThatOfTheErrors) {
 }
 
 // Corners shift in both eyes alike by 0.25 px and by 0.03 px in each, but are stated as independent
-// with 0.25 px. χ²/dof alone is 2.3 times too small here. 200 trials: the mean of the squared
-// errors is known to 0.25, and what the covariance's own scatter adds is below 1: outside by chance
-// once in 1e4.
+// with 0.25 px: by χ²/dof alone the mean square is 18 in place of 6. 200 trials: it is known to
+// 0.4, the part of χ²/dof and the scatter of the covariance add 3: outside by chance once in 1e4.
 TEST(Odometry, CovarianceHoldsForNoiseThatIsNotAsStated) {
   const Rig rig = example_rig();
   double squares = 0;

@@ -29,9 +29,18 @@ namespace vernier::cli {
 namespace {
 
 /// Figures of one or more drives, summed for their means.
+/// On a real drive with large gaps, all wrong steps rested on fewer (docs/results.md).
+constexpr std::size_t few_corners = 10;
+
 struct DriveFigures {
   int steps = 0, found = 0;
   int ambiguous = 0;  ///< with another motion in more than half as much of the image
+  int weak = 0;       ///< on few corners
+  struct StepDeviation {
+    double sd_m = 0;  ///< of its length, from corner noise
+    std::size_t to = 0;
+  };
+  std::vector<StepDeviation> deviations;  ///< of the steps found
   double links = 0, inliers = 0, chi2 = 0, dof = 0, cpu_s = 0;
   std::vector<double> nees;
   std::vector<TrajectoryDrift> drifts;
@@ -67,6 +76,8 @@ OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& 
     if (!step) continue;
     ++figures.found;
     figures.ambiguous += step->other_motion > 0.5;
+    figures.weak += step->inliers.size() < few_corners;
+    figures.deviations.push_back({position_sd_m(step->covariance), i + 1});
     figures.links += step->links;
     figures.inliers += static_cast<double>(step->inliers.size());
     figures.chi2 += step->chi2;
@@ -136,6 +147,24 @@ void add_truth(const DriveFigures& figures, double segment_m, Json& json, std::s
       mean(figures.nees), median, 100 * share_inside);
 }
 
+/// A step that is known far worse than the others makes the path's error alone.
+void tell_unlike_step(std::vector<DriveFigures::StepDeviation> steps, Session& session) {
+  constexpr double unlike = 10, least_m = 0.05;
+  constexpr std::size_t fewest = 5;
+  if (steps.size() < fewest) return;
+  const auto by_deviation = [](const auto& a, const auto& b) { return a.sd_m < b.sd_m; };
+  std::stable_sort(steps.begin(), steps.end(), by_deviation);
+  const double median_m = steps[steps.size() / 2].sd_m;
+  const DriveFigures::StepDeviation& worst = steps.back();
+  if (worst.sd_m < least_m || worst.sd_m < unlike * median_m) return;
+  session.add_trust_warning(
+      fmt::format("the step to pair {} (counted from 1) is known to {:.2g} m (standard deviation), "
+                  "the others to "
+                  "{:.2g}: its images "
+                  "may not be of one moment, or be of something near that moves or is bare",
+                  worst.to + 1, worst.sd_m, median_m));
+}
+
 void report(const DriveFigures& figures, const OdometryOptions& options, Session& session) {
   Json json{
       {"drives", figures.noise_sd_m.size()}, {"steps", figures.steps}, {"found", figures.found}};
@@ -145,6 +174,15 @@ void report(const DriveFigures& figures, const OdometryOptions& options, Session
                     "was repeated",
                     figures.steps - figures.found, figures.steps));
   }
+  const bool of_images = options.world.empty();
+  if (of_images && figures.weak > 0) {
+    session.add_trust_warning(fmt::format(
+        "{} of {} steps rest on fewer than {} corners, which may agree by chance: give images "
+        "that are less far apart, or of more texture",
+        figures.weak, figures.steps, few_corners));
+  }
+  if (of_images) tell_unlike_step(figures.deviations, session);
+  json["weak_steps"] = figures.weak;
   json["ambiguous_steps"] = figures.ambiguous;
   if (figures.ambiguous > 0) {
     session.add_trust_warning(fmt::format(

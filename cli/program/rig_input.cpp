@@ -240,12 +240,12 @@ void warn_of_millimetres(RigFormat format,
                          const std::string& remedy,
                          const Session& session) {
   constexpr double far_m = 10;
-  for (std::size_t i = 0; format != RigFormat::vernier && i < rig.cameras.size(); ++i) {
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const double distance_m = rig.T_camera_first[i].t.norm();
     if (distance_m < far_m) continue;
-    session.warn(
-        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, {}",
-                    rig.cameras[i].name, distance_m, remedy));
+    session.warn(fmt::format(
+        "camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, {}",
+        rig.cameras[i].name, distance_m, format == RigFormat::vernier ? "give metres" : remedy));
   }
 }
 

@@ -65,6 +65,10 @@ class Odometry(verb_calls.ProgramCase):
         found = json.loads(self.done(*call, '--truth', 'true.txt', '--segment-m', STEP_M * 0.99,
                                      '--rate-hz', '10', '-o', 'path.txt', '--json'))
         self.assertEqual((found['steps'], found['found']), (2, 2))
+        self.assertEqual((found['weak_steps'], found['ambiguous_steps']), (0, 0))
+        few = self.run_program(*call, '--corners', '12')
+        self.assertEqual(few.returncode, 3)
+        self.assertIn('fewer than 10 corners', few.stderr)
         self.assertGreater(found['inliers_per_step'], 20)
         self.assertLess(found['truth']['end_error_m'], 0.005)
         self.assertLess(found['truth']['end_error_deg'], 0.1)

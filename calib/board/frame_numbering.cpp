@@ -7,28 +7,51 @@
 #include <charconv>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "calib/error.h"
 
 namespace vernier::internal {
 
-ImageName parse_image_name(const std::filesystem::path& image) {
-  const std::string stem = image.stem().string();
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) {
-    throw Error(image.string(), "its name has no frame number",
-                "name images like left01.png, right01.png");
-  }
+namespace {
+
+/// The last run of digits of a text, and what is left with # in its place.
+struct NumberedText {
+  std::string rest, digits;
+};
+
+std::optional<NumberedText> last_number(const std::string& text) {
+  const std::size_t last = text.find_last_of("0123456789");
+  if (last == std::string::npos) return std::nullopt;
   std::size_t first = last;
-  while (first > 0 && std::isdigit(static_cast<unsigned char>(stem[first - 1]))) --first;
+  while (first > 0 && std::isdigit(static_cast<unsigned char>(text[first - 1]))) --first;
+  return NumberedText{text.substr(0, first) + "#" + text.substr(last + 1),
+                      text.substr(first, last + 1 - first)};
+}
+
+}  // namespace
+
+ImageName parse_image_name(const std::filesystem::path& image) {
+  const std::filesystem::path folder = image.parent_path();
+  std::filesystem::path series;
+  std::optional<NumberedText> found = last_number(image.stem().string());
+  if (found) {
+    series = folder / found->rest;
+  } else if ((found = last_number(folder.filename().string()))) {
+    series = folder.parent_path() / found->rest / image.stem();
+  } else {
+    throw Error(image.string(), "its name has no frame number",
+                "name images like left01.png, right01.png, or 01/left.png, 01/right.png");
+  }
+  const std::string& digits = found->digits;
   std::int64_t frame = 0;
-  const auto parsed = std::from_chars(stem.data() + first, stem.data() + last + 1, frame);
+  const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
   if (parsed.ec != std::errc()) {
     throw Error(image.string(), "its frame number is too large", "use up to 18 digits");
   }
-  return {(image.parent_path() / (stem.substr(0, first) + "#" + stem.substr(last + 1))).string(),
-          frame};
+  return {series.string(), frame};
 }
 
 FrameNumbering::FrameNumbering(std::vector<std::int64_t> numbers) {

@@ -11,11 +11,12 @@ namespace vernier::internal {
 
 /// Camera and frame of an image from its name.
 struct ImageName {
-  std::string camera;      ///< the name without its last number
-  std::int64_t frame = 0;  ///< the last number; its frame by FrameNumbering
+  std::string camera;      ///< folder and name without the number
+  std::int64_t frame = 0;  ///< the number; its frame by FrameNumbering
 };
 
-/// Throws Error for a name without a number, or with one of more than 18 digits.
+/// The last number in an image's name, or else in that of its folder. Throws Error if there is
+/// none, or one of more than 18 digits.
 ImageName parse_image_name(const std::filesystem::path& image);
 
 /// Frame numbers of images from the numbers in their names: the numbers themselves if all are below

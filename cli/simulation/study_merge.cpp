@@ -73,6 +73,12 @@ void copy_blocks(const fs::path& file, const StoredResults& all, StudyStore& mer
   put();
 }
 
+/// A merge that was killed may leave in its target what only the next writer can mend.
+void mend_store(const fs::path& file) {
+  if (!fs::is_regular_file(file) || !read_index(file).interrupted) return;
+  const StudyStore writer(file, OtherInstructionSets::allowed);
+}
+
 }  // namespace
 
 void merge_studies(const std::vector<fs::path>& parts,
@@ -81,6 +87,7 @@ void merge_studies(const std::vector<fs::path>& parts,
                    Session& session) {
   const Study study = open_folder(parts[0], session);
   StoredResults all = read_parts(parts, target, study, others, session);
+  mend_store(store_file(target, {}));
   all.add_folder(target);
   all.require_all_read();
   all.check_agreement();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "calib/camera.h"
@@ -29,6 +30,17 @@ void check_same_size(const GreyLevels& image, const Camera& camera) {
               "give the rig that took the images");
 }
 
+/// How much both images may be brightened before they are rounded to bytes. Values of 12 bits in a
+/// file of 16 use 16 of 256 levels.
+double headroom(const GreyLevels& left, const GreyLevels& right) {
+  constexpr float full = 255;
+  float largest = 1;
+  for (const GreyLevels* image : {&left, &right}) {
+    for (const float value : image->values) largest = std::max(largest, value);
+  }
+  return 2 * largest < full ? full / largest : 1;
+}
+
 }  // namespace
 
 std::vector<DescribedCorner> described_corners(const Rig& rig,
@@ -39,8 +51,10 @@ std::vector<DescribedCorner> described_corners(const Rig& rig,
   const EpipolarBand band(rig, covariance, {.nearest_m = options.nearest_m});
   check_same_size(left, rig.cameras[0]);
   check_same_size(right, rig.cameras[1]);
-  const auto [in_left, in_right] = corner_images(
-      bytes_of(left), bytes_of(right), rig, {.count = options.corners, .cells = options.cells});
+  const double gain = headroom(left, right);
+  const auto [in_left, in_right] =
+      corner_images(bytes_of(left, gain), bytes_of(right, gain), rig,
+                    {.count = options.corners, .cells = options.cells});
   const PatchDescriptors descriptors(in_left.grey);
   std::vector<DescribedCorner> corners;
   for (const CornerMatch& match : match_corners(in_left, in_right, band)) {

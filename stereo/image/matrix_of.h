@@ -13,10 +13,10 @@ inline cv::Mat matrix_of(const GreyLevels& image) {
   return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
 }
 
-/// Rounded to 8 bits.
-inline cv::Mat bytes_of(const GreyLevels& image) {
+/// Rounded to 8 bits, after multiplication by a gain.
+inline cv::Mat bytes_of(const GreyLevels& image, double gain = 1) {
   cv::Mat bytes;
-  matrix_of(image).convertTo(bytes, CV_8U);
+  matrix_of(image).convertTo(bytes, CV_8U, gain);
   return bytes;
 }
 

@@ -83,6 +83,22 @@ class Odometry(verb_calls.ProgramCase):
         self.refused(*call, '--truth', 'true.txt', '-o', 'true.txt', says='true.txt')
         self.assertIn('0 0 0', (self.folder / 'true.txt').read_text())
 
+    def test_12_bits_in_a_file_of_16(self):
+        (self.folder / 'wall.json').write_text(json.dumps(rig()))
+        grey = wall()
+        for i in range(2):
+            for side, x in (('l', i * STEP_M), ('r', i * STEP_M + BASELINE_M)):
+                rows = image(grey, x)
+                with (self.folder / f'd{side}{i}.pgm').open('wb') as file:
+                    file.write(b'P5\n%d %d\n65535\n' % SIZE)
+                    for row in rows:
+                        file.write(b''.join((16 * value).to_bytes(2, 'big') for value in row))
+        (self.folder / 'true.txt').write_text(''.join(f'{i} {i * STEP_M} 0 1 0 0 0 1\n' for i in range(2)))
+        found = json.loads(self.done('odometry', '--left', 'dl*.pgm', '--right', 'dr*.pgm', '--rig', 'wall.json',
+                                     '--truth', 'true.txt', '--json'))
+        self.assertGreater(found['inliers_per_step'], 20)
+        self.assertLess(found['truth']['end_error_m'], 0.005)
+
     def test_rigs_and_poses_of_other_tools(self):
         grey = wall()
         for i in range(2):

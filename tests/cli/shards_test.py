@@ -224,6 +224,24 @@ class Processors(ShardCase):
 
 
 class Kills(ShardCase):
+    def test_a_merge_is_completed_whatever_a_kill_left(self):
+        merged, left = self.folder / 'merged', self.folder / 'left'
+        for i in range(2):
+            self.run_part(f'part{i}', '--shard', f'{i}/2')
+        words = ['study', 'merge', *self.parts, '-o']
+        expected = untimed(self.works(*words, merged, '--json').stdout)
+        shutil.copytree(merged, left)
+        # a log without its index, which no reader may make
+        with contextlib.closing(sqlite3.connect(merged / 'results.sqlite')) as database:
+            database.execute('PRAGMA journal_mode = WAL')
+            database.execute('CREATE TABLE spare (x)')
+            database.execute('DROP TABLE spare')
+            database.commit()
+            for ending in ('', '-wal'):
+                shutil.copy(merged / f'results.sqlite{ending}', left / f'results.sqlite{ending}')
+        self.assertGreater((left / 'results.sqlite-wal').stat().st_size, 0)
+        self.assertEqual(untimed(self.works(*words, left, '--json').stdout), expected)
+
     def test_no_kill_changes_a_result(self):
         script = ROOT / 'scripts/study_kills.py'
         for during in ('study', 'merge'):

@@ -177,6 +177,10 @@ TEST(ImageName, LastNumberIsTheFrame) {
   EXPECT_EQ(parse_image_name("x/left07.png").camera, parse_image_name("x/left12.jpg").camera);
   EXPECT_NE(parse_image_name("x/left07.png").camera, parse_image_name("x/right07.png").camera);
   EXPECT_THROW(parse_image_name("left.png"), Error);
+  EXPECT_THROW(parse_image_name("set/left.png"), Error);
+  EXPECT_EQ(parse_image_name("set2/012/left.png").frame, 12);
+  EXPECT_EQ(parse_image_name("s/001/left.png").camera, parse_image_name("s/002/left.png").camera);
+  EXPECT_NE(parse_image_name("s/001/left.png").camera, parse_image_name("s/001/right.png").camera);
   EXPECT_EQ(parse_image_name("cam0/1403636579763555584.png").frame, 1403636579763555584);
   EXPECT_THROW(parse_image_name("cam0/99999999999999999999.png"), Error);
 }

@@ -65,8 +65,8 @@ struct MotionStep {
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
   std::vector<CornerLink> inliers;
   int links = 0;  ///< that were given
-  /// In how much of the image links agree on another motion, relative to the inliers: cells of 12 x
-  /// 12. Above 1/2 it is not clear which of the two is the rig's: something large moves.
+  /// Of odometry_path(): in how much of the image links agree on another motion, relative to the
+  /// inliers (cells of 12 x 12). Above 1/2 it is not clear which of the two is the rig's.
   double other_motion = 0;
   double chi2 = 0;  ///< of the inliers, by their covariances
   int dof = 0;      ///< five for each inlier, less six

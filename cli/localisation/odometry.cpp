@@ -28,16 +28,16 @@
 namespace vernier::cli {
 namespace {
 
-/// Figures of one or more drives, summed for their means.
 /// On a real drive with large gaps, all wrong steps rested on fewer (docs/results.md).
 constexpr std::size_t few_corners = 10;
 
+/// Figures of one or more drives, summed for their means.
 struct DriveFigures {
   int steps = 0, found = 0;
   int ambiguous = 0;  ///< with another motion in more than half as much of the image
   int weak = 0;       ///< on few corners
   struct StepDeviation {
-    double sd_m = 0;  ///< of its length, from corner noise
+    double sd_m = 0;  ///< of its position, from corner noise
     std::size_t to = 0;
   };
   std::vector<StepDeviation> deviations;  ///< of the steps found
@@ -184,11 +184,11 @@ void report(const DriveFigures& figures, const OdometryOptions& options, Session
   if (of_images) tell_unlike_step(figures.deviations, session);
   json["weak_steps"] = figures.weak;
   json["ambiguous_steps"] = figures.ambiguous;
-  if (figures.ambiguous > 0) {
+  if (of_images && figures.ambiguous > 0) {
     session.add_trust_warning(fmt::format(
-        "in {} of {} steps corners in a large part of the image agree on another motion: "
-        "something large moves there, and which of the two motions is the rig's is not "
-        "known",
+        "in {} of {} steps corners in a large part of the image agree on another motion, and "
+        "which of the two is the rig's is not known: something large may move, be mirrored or "
+        "be repeated; cover it, or give images that are less far apart",
         figures.ambiguous, figures.steps));
   }
   const double found = std::max(1, figures.found);

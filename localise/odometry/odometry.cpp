@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,38 +55,6 @@ void check(const Rig& rig,
   }
 }
 
-/// In how many cells of the image links are.
-double cells_with(const Rig& rig, const std::vector<TriangulatedLink>& links) {
-  const std::vector<double> weights = weights_by_cell(rig, links);
-  return std::round(std::accumulate(weights.begin(), weights.end(), 0.0));
-}
-
-std::vector<TriangulatedLink> chosen_of(const std::vector<TriangulatedLink>& links,
-                                        const std::vector<int>& chosen) {
-  std::vector<TriangulatedLink> of;
-  for (const int i : chosen) of.push_back(links[static_cast<std::size_t>(i)]);
-  return of;
-}
-
-/// MotionStep::other_motion.
-double other_motion(const Rig& rig,
-                    const std::vector<TriangulatedLink>& links,
-                    const SettledStep& settled,
-                    const StepOptions& options) {
-  constexpr double apart = 9;  // times the gate: three times as far off as a right link may be
-  constexpr int draws = 100;   // enough for a motion of half of what is left
-  const std::vector<TriangulatedLink> rest = links_beyond(
-      rig, links, settled.refined.T_from_to, apart * link_gate(options.gate_probability));
-  StepOptions fewer = options;
-  fewer.max_draws = std::min(options.max_draws, draws);
-  const std::optional<Pose> agreed = consensus(rig, rest, fewer);
-  if (!agreed) return 0;
-  const auto other = settled_step({rig, rig}, rest, *agreed, options);
-  if (!other) return 0;
-  return cells_with(rig, chosen_of(rest, other->agreeing)) /
-         cells_with(rig, chosen_of(links, settled.agreeing));
-}
-
 }  // namespace
 
 std::optional<MotionStep> estimate_step(const Rig& rig,
@@ -109,7 +76,6 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   MotionStep step;
   step.T_from_to = refined.T_from_to;
   step.links = static_cast<int>(links.size());
-  step.other_motion = other_motion(rig, placed, *settled, options);
   for (const int i : chosen) step.inliers.push_back(placed[static_cast<std::size_t>(i)].link);
   step.chi2 = refined.total_chi2();
   step.dof = 5 * static_cast<int>(chosen.size()) - 6;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -99,6 +100,15 @@ double draws_needed(double share, std::size_t drawn_links, double confidence) {
   if (all_right >= 1) return 1;
   if (all_right <= 0) return std::numeric_limits<double>::infinity();
   return std::log1p(-confidence) / std::log1p(-all_right);
+}
+
+constexpr int cells = 12;  // along each side of the image, as corners are spread
+
+std::size_t cell_of(const Rig& rig, const Eigen::Vector2d& left_px) {
+  const Eigen::Array2d at =
+      cells * (left_px.array() + 0.5) / rig.cameras[0].size_px.array().cast<double>();
+  const Eigen::Array2i index = at.max(0).min(cells - 1).cast<int>();
+  return static_cast<std::size_t>(index.y() * cells + index.x());
 }
 
 /// Draws links with probabilities as their weights.
@@ -193,19 +203,12 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
 }
 
 std::vector<double> weights_by_cell(const Rig& rig, const std::vector<TriangulatedLink>& links) {
-  constexpr int cells = 12;  // along each side, as corners are spread
-  const auto cell = [&](const TriangulatedLink& link) {
-    const Eigen::Vector2d size_px = rig.cameras[0].size_px.cast<double>();
-    const Eigen::Array2d at = cells * (link.corner.from_px.head<2>().array() + 0.5);
-    const Eigen::Array2i index = (at / size_px.array()).floor().cast<int>().max(0).min(cells - 1);
-    return index.y() * cells + index.x();
-  };
   std::array<int, cells * cells> in_cell{};
-  for (const TriangulatedLink& link : links) ++in_cell[static_cast<std::size_t>(cell(link))];
+  for (const TriangulatedLink& link : links) ++in_cell[cell_of(rig, link.corner.from_px.head<2>())];
   std::vector<double> weights;
   weights.reserve(links.size());
   for (const TriangulatedLink& link : links) {
-    weights.push_back(1.0 / in_cell[static_cast<std::size_t>(cell(link))]);
+    weights.push_back(1.0 / in_cell[cell_of(rig, link.corner.from_px.head<2>())]);
   }
   return weights;
 }
@@ -319,6 +322,33 @@ std::optional<SettledStep> settled_step(const StepRigs& rigs,
     chosen = std::move(again);
   }
   return SettledStep{std::move(*refined), std::move(chosen)};
+}
+
+double other_motion(const Rig& rig,
+                    std::span<const StereoCorner> from,
+                    std::span<const StereoCorner> to,
+                    std::span<const CornerLink> links,
+                    const MotionStep& step,
+                    const StepOptions& options) {
+  constexpr double apart = 9;  // times the gate: three times as far off as a right link may be
+  constexpr std::size_t fewest = 10;  // fewer may agree by chance
+  const std::vector<TriangulatedLink> rest =
+      links_beyond(rig, triangulated_links(rig, from, to, links, options), step.T_from_to,
+                   apart * link_gate(options.gate_probability));
+  if (rest.size() < fewest) return 0;
+  const std::optional<Pose> agreed = consensus(rig, rest, options);
+  if (!agreed) return 0;
+  const auto other = settled_step({rig, rig}, rest, *agreed, options);
+  if (!other || other->agreeing.size() < fewest) return 0;
+  std::set<std::size_t> others, own;
+  for (const int i : other->agreeing) {
+    others.insert(cell_of(rig, rest[static_cast<std::size_t>(i)].corner.from_px.head<2>()));
+  }
+  for (const CornerLink& link : step.inliers) {
+    own.insert(cell_of(rig, from[static_cast<std::size_t>(link.from)].left_px));
+  }
+  return static_cast<double>(others.size()) /
+         static_cast<double>(std::max<std::size_t>(1, own.size()));
 }
 
 std::vector<LinkedCorner> corners_at(const std::vector<TriangulatedLink>& links,

@@ -122,6 +122,14 @@ std::optional<SettledStep> settled_step(const StepRigs& rigs,
                                         const StepOptions& options,
                                         const FloorBasis* within = nullptr);
 
+/// MotionStep::other_motion of a step, by these links.
+double other_motion(const Rig& rig,
+                    std::span<const StereoCorner> from,
+                    std::span<const StereoCorner> to,
+                    std::span<const CornerLink> links,
+                    const MotionStep& step,
+                    const StepOptions& options);
+
 std::vector<LinkedCorner> corners_at(const std::vector<TriangulatedLink>& links,
                                      const std::vector<int>& chosen);
 

@@ -14,6 +14,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/odometry.h"
+#include "localise/odometry/step_consensus.h"
 #include "localise/place.h"
 
 namespace vernier::localise {
@@ -58,16 +59,17 @@ std::optional<MotionStep> linked_step(const Rig& rig,
     return estimate_step(rig, from, to,
                          link_corners_near(rig, from, to, T_from_to, window_px, linking), options);
   };
-  auto found = estimate_step(rig, from, to, link_corners(from, to, linking), options);
+  const std::vector<CornerLink> unguided = link_corners(from, to, linking);
+  auto found = estimate_step(rig, from, to, unguided, options);
   for (const double window_px : search_windows_px) {
     if (found) break;
     found = near(expected, window_px);
   }
   if (!found) return std::nullopt;
   auto again = near(found->T_from_to, found_window_px);
-  if (!again || again->inliers.size() < found->inliers.size()) return found;
-  again->other_motion = found->other_motion;  // links near the motion agree with no other
-  return again;
+  if (again && again->inliers.size() >= found->inliers.size()) found = std::move(again);
+  found->other_motion = internal::other_motion(rig, from, to, unguided, *found, options);
+  return found;
 }
 
 }  // namespace

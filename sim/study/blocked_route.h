@@ -30,7 +30,7 @@ struct RouteFault {
 RouteFault route_fault(const World& world, double eye_height_m);
 
 /// Throws the Error of queries that are drawn near a route without a free place, with its fault if
-/// that concerns most of the route.
+/// that concerns nearly all of the route.
 [[noreturn]] void throw_no_free_position(const World& world, double eye_height_m);
 
 }  // namespace vernier::sim::internal

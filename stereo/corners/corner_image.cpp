@@ -43,8 +43,11 @@ double magnification(const Rig& rig) {
   const Eigen::Matrix3d& R = rig.T_camera_first[1].R;
   const auto right = enlargement(rig.cameras[0], rig.cameras[1], R);
   const auto left = enlargement(rig.cameras[1], rig.cameras[0], R.transpose());
-  if (!right || !left) return 1;
-  return std::clamp(std::sqrt(*right / *left), 1 / most_ratio, most_ratio);
+  const double larger = right && left ? std::sqrt(*right / *left)
+                        : right       ? *right
+                        : left        ? 1 / *left
+                                      : 1;
+  return std::clamp(larger, 1 / most_ratio, most_ratio);
 }
 
 /// Smooths an image for its reduction. Returns the factor by which its white noise falls.

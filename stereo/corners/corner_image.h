@@ -37,7 +37,8 @@ struct CornerImages {
 /// so the right image gets half as many corners more. If distant things are larger in one image by
 /// more than 3 %, that image is reduced (to an eighth at most), since corners are repeated, and
 /// patches alike, at one scale only. Larger in the geometric mean of what is seen in the middle of
-/// the left image and of the right one, so that like cameras that are verged keep their images.
+/// the left image and of the right one, so that like cameras that are verged keep their images; or
+/// of the one that both see.
 CornerImages corner_images(const cv::Mat& left,
                            const cv::Mat& right,
                            const Rig& rig,

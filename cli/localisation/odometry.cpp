@@ -157,12 +157,11 @@ void tell_unlike_step(std::vector<DriveFigures::StepDeviation> steps, Session& s
   const double median_m = steps[steps.size() / 2].sd_m;
   const DriveFigures::StepDeviation& worst = steps.back();
   if (worst.sd_m < least_m || worst.sd_m < unlike * median_m) return;
-  session.add_trust_warning(
-      fmt::format("the step to pair {} (counted from 1) is known to {:.2g} m (standard deviation), "
-                  "the others to "
-                  "{:.2g}: its images "
-                  "may not be of one moment, or be of something near that moves or is bare",
-                  worst.to + 1, worst.sd_m, median_m));
+  session.add_trust_warning(fmt::format(
+      "the step to pair {} (counted from 1) is known to {:.2g} m (standard deviation), "
+      "the others to {:.2g}: its images may not be of one moment, or be of something near "
+      "that moves or is bare",
+      worst.to + 1, worst.sd_m, median_m));
 }
 
 void report(const DriveFigures& figures, const OdometryOptions& options, Session& session) {

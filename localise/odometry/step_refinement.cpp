@@ -83,6 +83,14 @@ struct EliminatedPoint {
   }
 };
 
+/// Aᵀ Q y: of what a corner measures, the part in the motion's equations, its point eliminated.
+template <class Measured>
+Eigen::Matrix<double, 6, Measured::ColsAtCompileTime> in_motion(const LinearisedCorner& c,
+                                                                const Measured& y) {
+  const EliminatedPoint p(c, 0);
+  return c.by_motion.transpose() * y - p.W * p.V.solve(c.by_point.transpose() * y);
+}
+
 /// State of the minimisation.
 struct StepState {
   Pose T_from_to;
@@ -207,10 +215,9 @@ Matrix6d step_covariance(const Rig& rig,
   for (std::size_t i = 0; i < corners.size(); ++i) {
     LinearisedCorner c;
     if (!linearise(projectors, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
-    const EliminatedPoint p(c, 0);
-    const Matrix6d M = c.by_motion.transpose() * c.by_motion - p.W * p.V.solve(p.W.transpose());
-    const Vector6d Qr = c.by_motion.transpose() * c.residual - p.W * p.V.solve(p.gradient);
-    const Vector6d g = (Matrix6d::Identity() - M * inverse).partialPivLu().solve(Qr);
+    const Matrix6d M = in_motion(c, c.by_motion);
+    const Matrix6d others = Matrix6d::Identity() - M * inverse;
+    const Vector6d g = others.partialPivLu().solve(in_motion(c, c.residual));
     // A corner without which the motion is not determined has no residual to judge it by.
     scatter += g.allFinite() ? Matrix6d(g * g.transpose()) : Matrix6d(factor * M);
   }
@@ -237,8 +244,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,
     by_rig.topRows<4>() = corners[i].from_whitening * projector.by_rig();
     projector.project(T_to_from * step.x_from_m[i], pixels, by_point);
     by_rig.bottomRows<4>() = corners[i].to_whitening * projector.by_rig();
-    const EliminatedPoint p(c, 0);
-    gradient += c.by_motion.transpose() * by_rig - p.W * p.V.solve(c.by_point.transpose() * by_rig);
+    gradient += in_motion(c, by_rig);
   }
   return -solve_symmetric(step.information, Eigen::MatrixXd(gradient));
 }

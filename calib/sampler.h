@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "calib/covariance.h"
@@ -10,6 +11,11 @@
 #include "calib/rig_estimate.h"
 
 namespace vernier {
+
+namespace internal {
+class StableCoordinates;
+struct MovedRig;
+}  // namespace internal
 
 /// Sampling options. Draw i of a seed is one rig and, given it, one board pose per frame.
 struct SamplingOptions {
@@ -22,8 +28,10 @@ struct SamplingOptions {
 ///
 ///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ
 ///
-/// ⊕ is the tangent of calib/rig.h. ψ_c scales standard deviations: at ψ_c = 2 every deviation is
-/// exactly twice that at ψ_c = 1 under the same seed.
+/// ⊕ moves a rig along the valley of rigs that see nearly the same
+/// (calib/estimate/stable_coordinates.h); to first order it is the tangent of calib/rig.h, and where
+/// a draw is too far from the mean, exactly that. ψ_c scales standard deviations: at ψ_c = 2 every
+/// deviation is exactly twice that at ψ_c = 1 under the same seed.
 class RigSampler {
  public:
   /// Throws Error if the estimate has no covariance or one that is not positive semi-definite.
@@ -36,6 +44,9 @@ class RigSampler {
   /// rigs that no cameras can have, such as a negative focal length.
   Rig sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
 
+  /// The rig at a deviation.
+  internal::MovedRig moved(const Eigen::VectorXd& deviation) const;
+
   const ScaledDecomposition& decomposition() const { return decomposition_; }
   const Rig& mean() const { return mean_; }
 
@@ -43,6 +54,7 @@ class RigSampler {
   std::string place_;
   Rig mean_;
   ScaledDecomposition decomposition_;
+  std::shared_ptr<const internal::StableCoordinates> coordinates_;
 };
 
 }  // namespace vernier

@@ -32,6 +32,7 @@
 #include "calib/camera/model_nesting.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
@@ -346,6 +347,7 @@ void add_trust_warnings(const Solution& s,
     add(prior_conflict_warning(prior, estimate.rig, *estimate.covariance_mvb,
                                estimate.covariance->matrix, clusters));
   }
+  add(curvature_warning(estimate.rig, *estimate.covariance));
 }
 
 }  // namespace
@@ -379,12 +381,10 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
     add_scale_of_aspect(estimate.rig, summary.board_aspect->value, estimate.covariance->matrix);
   }
   estimate.calibration = std::move(summary);
-  const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
-  warnings.insert(warnings.end(), more.begin(), more.end());
+  for (auto& line : warnings_of(*estimate.calibration, honest.matrix, s)) warnings.push_back(line);
   if (options.check_input) {
-    const auto folds = inversion_warnings(estimate.rig);
-    warnings.insert(warnings.end(), folds.begin(), folds.end());
+    for (const auto& line : inversion_warnings(estimate.rig)) warnings.push_back(line);
     add_trust_warnings(s, options, estimate);
   }
   estimate.evidence = CalibrationEvidence{

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 #include <variant>
@@ -18,6 +19,7 @@
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/estimate/same_rig.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
@@ -149,6 +151,43 @@ void check_covariance(const Rig& rig, const Covariance& covariance, const char* 
   ScaledDecomposition{covariance};  // throws if it is not positive semi-definite
 }
 
+/// b's coordinates about a and their covariance, in which errors are closer to normal than in the
+/// tangent. std::nullopt where b has none: other models, or rotations held in part.
+struct StableDifference {
+  Eigen::VectorXd delta;
+  Eigen::MatrixXd covariance;
+};
+
+std::optional<StableDifference> stable_difference(const Rig& a,
+                                                  const Covariance& covariance_a,
+                                                  const Rig& b,
+                                                  const Covariance& covariance_b,
+                                                  const HeldInBoth& held) {
+  if (!same_lens_models(a, b)) return std::nullopt;
+  const auto first_pose = held.in_a.begin() + pose_index(a, 1);
+  if (std::any_of(first_pose, held.in_a.end(), [](bool h) { return h; })) return std::nullopt;
+  Eigen::MatrixXd both = covariance_a.matrix + covariance_b.matrix;
+  for (Eigen::Index i = 0; i < both.rows(); ++i) {
+    if (held.in_a[static_cast<std::size_t>(i)]) both(i, i) = 0;
+  }
+  const Eigen::VectorXd sigma = both.diagonal().cwiseMax(0).cwiseSqrt();
+  const StableCoordinates about_a(a, both);
+  const auto delta = about_a.try_coordinates(b);
+  if (!delta) return std::nullopt;
+  constexpr double step = 1e-3;  // in sigma
+  Eigen::MatrixXd by_b = Eigen::MatrixXd::Identity(sigma.size(), sigma.size());
+  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
+    if (!(sigma[i] > 0)) continue;
+    const Eigen::VectorXd h = step * sigma[i] * Eigen::VectorXd::Unit(sigma.size(), i);
+    const auto up = about_a.try_coordinates(retract(b, h));
+    const auto down = about_a.try_coordinates(retract(b, -h));
+    if (!up || !down) return std::nullopt;
+    by_b.col(i) = (*up - *down) / (2 * step * sigma[i]);
+  }
+  return StableDifference{*delta,
+                          covariance_a.matrix + by_b * covariance_b.matrix * by_b.transpose()};
+}
+
 /// d² and its components, over the parameters with a variance.
 void measure(const Eigen::VectorXd& delta,
              const Eigen::MatrixXd& covariance,
@@ -206,7 +245,11 @@ RigDifference rig_difference(const Rig& a,
     }
     result.parameters.push_back(std::move(p));
   }
-  if (!known.empty()) measure(delta(known), sum(known, known), known_names, result);
+  if (!known.empty()) {
+    const auto stable = stable_difference(a, covariance_a, b, covariance_b, held);
+    measure((stable ? stable->delta : delta)(known),
+            (stable ? stable->covariance : sum)(known, known), known_names, result);
+  }
   if (!result.fixed_at_different_values.empty()) {
     result.mahalanobis2 = std::numeric_limits<double>::infinity();
     result.p_value = 0;

@@ -45,6 +45,7 @@ enum class DrawSource : std::uint32_t {
   planned_views = 41,       // kinds and sequences of views that a plan expects
   injected_noise = 42,      // noise of simulated boards beside real ones
   missed_edges = 43,        // edges that a view misses whole
+  curvature = 44,           // rigs that show how linear a covariance is
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -47,40 +48,47 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
   const RigSampler sampler(estimate);
   const Rig& rig = estimate.rig;
   const Eigen::MatrixXd& factor = sampler.decomposition().factor();
-  std::vector<DepthUncertainty> result;
+  std::vector<PixelPair> pairs;
   for (const double range : ranges_m) {
     const Eigen::Vector3d x(0, 0, range);
-    const PixelPair pair{project(rig.cameras[0], x),
-                         project(rig.cameras[1], rig.T_camera_first[1] * x)};
+    pairs.push_back(
+        {project(rig.cameras[0], x), project(rig.cameras[1], rig.T_camera_first[1] * x)});
+  }
+  std::vector<std::vector<double>> depths(pairs.size());  // of the draws; infinite if there is none
+  for (int i = 0; i < samples; ++i) {
+    const Rig drawn = sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto depth = try_triangulated_depth_m(drawn, pairs[k]);
+      depths[k].push_back(depth && *depth > 0 ? *depth : std::numeric_limits<double>::infinity());
+    }
+  }
+  std::vector<DepthUncertainty> result;
+  for (std::size_t at = 0; at < pairs.size(); ++at) {
+    const double range = ranges_m[at];
     DepthUncertainty u{range, 0, 0, 0, {}};
     // J D U √s column by column: central differences along the principal directions
     constexpr double step = 1e-3;
     for (Eigen::Index k = 0; k < factor.cols(); ++k) {
       const auto depth = [&](double s) {
-        return triangulated_depth_m(retract(rig, s * factor.col(k)), pair);
+        return triangulated_depth_m(retract(rig, s * factor.col(k)), pairs[at]);
       };
       u.sigma_linear_m += std::pow(psi_c * (depth(step) - depth(-step)) / (2 * step), 2);
     }
     u.sigma_linear_m = std::sqrt(u.sigma_linear_m);
     double sum = 0, squares = 0;
     int physical = 0;
-    std::vector<double> depths;
-    for (int i = 0; i < samples; ++i) {
-      const auto depth = try_triangulated_depth_m(
-          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), pair);
-      const bool meets = depth && *depth > 0;
-      depths.push_back(meets ? *depth : std::numeric_limits<double>::infinity());
-      if (!meets) continue;
+    for (const double depth : depths[at]) {
+      if (!std::isfinite(depth)) continue;
       ++physical;
-      sum += *depth;
-      squares += (*depth - range) * (*depth - range);
+      sum += depth;
+      squares += (depth - range) * (depth - range);
     }
     const double mean = physical > 0 ? sum / physical - range : 0;
     u.sigma_sampled_m =
         physical > 1 ? std::sqrt(std::max(0.0, squares / physical - mean * mean)) : 0;
     u.non_physical_share = 1 - static_cast<double>(physical) / samples;
-    std::sort(depths.begin(), depths.end());
-    u.interval_95_m = interval_95(depths);
+    std::sort(depths[at].begin(), depths[at].end());
+    u.interval_95_m = interval_95(depths[at]);
     result.push_back(u);
   }
   return result;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/uncertainty/pose_covariance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -83,6 +84,7 @@ Eigen::MatrixXd rig_and_poses_covariance(const RigAndBoards& joint) {
 
 MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               const Eigen::VectorXd& rig_deviation,
+                              const MovedRig& moved,
                               double psi_c,
                               std::uint64_t seed,
                               std::uint32_t trial) {
@@ -101,14 +103,17 @@ MeanBoardMap sample_board_map(const RigAndBoards& joint,
   for (std::size_t f = 0; f < given.frames.size(); ++f) {
     const auto& frame = given.frames[f];
     const Eigen::Matrix<double, 6, 1> z = RandomStream(place(joint.frames[f])).normals(6);
-    const Eigen::Matrix<double, 6, 1> delta =
+    Eigen::Matrix<double, 6, 1> delta =
         frame.by_rig * rig_deviation + frame.by_warp * warp + sigma * frame.factor * z;
-    const Pose moved = retract(joint.T_first_board[f], delta) * joint.T_first_board[f].inverse();
-    map.A += moved.R;
-    map.b += moved.t;
+    const Pose& told = joint.T_first_board[f];
+    delta.head<3>() -= moved.linear_turn;
+    delta.tail<3>() -= moved.linear_turn.cross(told.t);
+    const Pose motion = retract(told, delta) * told.inverse();
+    map.A += motion.R;
+    map.b += motion.t;
   }
   const auto frames = static_cast<double>(given.frames.size());
-  return {map.A / frames, map.b / frames};
+  return {moved.turn * map.A / frames, moved.turn * map.b / frames};
 }
 
 }  // namespace vernier::internal

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/rig_and_boards.h"
 
 namespace vernier::internal {
@@ -29,10 +30,12 @@ struct MeanBoardMap {
   Eigen::Vector3d b;
 };
 
-/// One draw of the boards given that the rig deviates by `rig_deviation`: the mean of T_f′ T_f⁻¹,
-/// not linearised. The random streams are those of (seed, trial), frame by frame.
+/// One draw of the boards given that the rig deviates by `rig_deviation` and is `moved`: the mean
+/// of T_f′ T_f⁻¹, not linearised. The boards turn with the rig's frame. The random streams are
+/// those of (seed, trial), frame by frame.
 MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               const Eigen::VectorXd& rig_deviation,
+                              const MovedRig& moved,
                               double psi_c,
                               std::uint64_t seed,
                               std::uint32_t trial);

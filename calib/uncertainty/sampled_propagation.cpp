@@ -10,6 +10,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/interval.h"
 #include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
@@ -118,8 +119,11 @@ std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,
   for (int i = 0; i < options.samples; ++i) {
     const auto trial = static_cast<std::uint32_t>(i);
     const Eigen::VectorXd deviation = sampler.deviation(options.psi_c, options.seed, trial);
-    const Rig drawn = retract(told, deviation);
-    if (by_boards) map = sample_board_map(*boards, deviation, options.psi_c, options.seed, trial);
+    const MovedRig moved = sampler.moved(deviation);
+    const Rig& drawn = moved.rig;
+    if (by_boards) {
+      map = sample_board_map(*boards, deviation, moved, options.psi_c, options.seed, trial);
+    }
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Eigen::Vector3d x = carried(told.T_camera_first[camera], drawn.T_camera_first[camera],
                                         points[k], fixed_to, map);
@@ -158,10 +162,13 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
   for (int i = 0; i < options.samples; ++i) {
     const auto trial = static_cast<std::uint32_t>(i);
     const Eigen::VectorXd deviation = sampler.deviation(options.psi_c, options.seed, trial);
-    const Rig drawn = retract(sampler.mean(), deviation);
+    const MovedRig moved = sampler.moved(deviation);
+    const Rig& drawn = moved.rig;
     const Eigen::Vector4d noise = pair_sigma_px * pair_noise(options, trial);
     MeanBoardMap map{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-    if (stabilised) map = sample_board_map(*boards, deviation, options.psi_c, options.seed, trial);
+    if (stabilised) {
+      map = sample_board_map(*boards, deviation, moved, options.psi_c, options.seed, trial);
+    }
     const Eigen::Matrix3d back = map.A.inverse();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       auto x = triangulate_point(

@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
 
 #include "calib/error.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/draw_sources.h"
@@ -32,6 +34,7 @@ RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
   if (estimate.covariance->names != parameter_names(mean_)) {
     throw Error(place, "its covariance does not match the rig's parameters", "");
   }
+  coordinates_ = std::make_shared<const StableCoordinates>(mean_, estimate.covariance->matrix);
 }
 
 Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
@@ -46,9 +49,13 @@ Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uin
 }
 
 Rig RigSampler::sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
-  Rig rig = retract(mean_, deviation(psi_c, seed, trial));
+  Rig rig = moved(deviation(psi_c, seed, trial)).rig;
   if (!parameters(rig).allFinite()) throw_overflow(place_, psi_c);
   return rig;
+}
+
+MovedRig RigSampler::moved(const Eigen::VectorXd& deviation) const {
+  return coordinates_->rig(deviation);
 }
 
 }  // namespace vernier

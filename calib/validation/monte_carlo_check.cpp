@@ -15,6 +15,7 @@
 #include "calib/board_state.h"
 #include "calib/calibration/outliers.h"
 #include "calib/error.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
@@ -182,13 +183,14 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                 "give it in full, with zeros for fixed parameters");
   }
   const ScaledRoot root(covariance);
+  const StableCoordinates about_state(state.rig, covariance);
   const Copies copies(observations, state, problem, options.seed);
   Eigen::MatrixXd errors(p, options.trials);
   std::vector<char> solved(static_cast<std::size_t>(options.trials), 0);
   for_each_index(solved.size(), options.threads, [&](std::size_t trial) {
     const ResolveResult result = copies.solve(static_cast<std::uint32_t>(trial));
     solved[trial] = result.status == ResolveStatus::converged;
-    errors.col(static_cast<Eigen::Index>(trial)) = difference(result.state.rig, state.rig);
+    errors.col(static_cast<Eigen::Index>(trial)) = about_state.coordinates(result.state.rig);
   });
   MonteCarloCheck check;
   for (std::size_t i = 0; i < solved.size(); ++i) {

@@ -8,11 +8,13 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "calib/base/error_place.h"
 #include "calib/covariance.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/projection_difference.h"
 #include "calib/estimate/same_rig.h"
 #include "calib/pose.h"
@@ -60,6 +62,13 @@ void add_warnings(const DiffArguments& options, Comparison& found) {
     if (covariance->has_value()) continue;
     warn(fmt::format("{} has no {} covariance: only projections are compared", *name,
                      options.covariance == "mvb" ? "minimum variance" : "honest"));
+  }
+  for (const auto& [estimate, covariance, name] :
+       {std::tuple(&found.a, &found.covariance_a, &options.a),
+        std::tuple(&found.b, &found.covariance_b, &options.b)}) {
+    if (!*covariance) continue;
+    const auto doubt = curvature_warning(estimate->rig, **covariance);
+    if (doubt) warn(*name + ": " + *doubt);
   }
   if (found.projection.left_out > 0) {
     warn(

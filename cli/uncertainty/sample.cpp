@@ -12,6 +12,7 @@
 #include "cli/program/option_checks.h"
 
 #include "calib/base/file_in_progress.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/rig_file.h"
 #include "calib/uncertainty/physical_rig.h"
 #include "cli/program/output_check.h"
@@ -65,6 +66,8 @@ void run(const SampleArguments& options, Session& session) {
 
   const UnphysicalDraws unphysical_draws = write_samples(options, rig, sampler, session);
   unphysical_draws.report(options.count, session);
+  const auto doubt = curvature_warning(rig.estimate.rig, *rig.estimate.covariance);
+  if (doubt) session.add_trust_warning(*doubt);
 
   Json directions = Json::array();
   for (const CovarianceDirection& d : sampler.decomposition().directions()) {

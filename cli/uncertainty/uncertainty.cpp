@@ -10,6 +10,7 @@
 #include "calib/base/error_place.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
@@ -69,6 +70,8 @@ void check_draws(const RigEstimate& estimate,
     unphysical.add(sampler.sample(options.psi_c, options.seed, static_cast<std::uint32_t>(i)));
   }
   unphysical.report(options.samples, session);
+  const auto doubt = curvature_warning(estimate.rig, *estimate.covariance);
+  if (doubt) session.add_trust_warning(*doubt);
 }
 
 void run(const UncertaintyArguments& options, Session& session) {

@@ -12,9 +12,6 @@ namespace vernier::sim::internal {
 /// Throws Error(`place`) unless the rigs have as many cameras, of the same image sizes.
 void check_same_cameras(const Rig& truth, const Rig& rig, const std::string& place);
 
-/// Whether each camera has the same lens model in both; they have as many cameras.
-bool same_lens_models(const Rig& a, const Rig& b);
-
 /// Throws Error(`place`) if psi_c is neither 0 nor 1 and lens models differ.
 void check_scale(const Rig& truth, const Rig& rig, double psi_c, const std::string& place);
 

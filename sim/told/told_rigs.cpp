@@ -12,6 +12,7 @@
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
@@ -74,15 +75,8 @@ void check_same_cameras(const Rig& truth, const Rig& rig, const std::string& pla
   }
 }
 
-bool same_lens_models(const Rig& a, const Rig& b) {
-  for (std::size_t c = 0; c < a.cameras.size(); ++c) {
-    if (model_name(a.cameras[c].model) != model_name(b.cameras[c].model)) return false;
-  }
-  return true;
-}
-
 void check_scale(const Rig& truth, const Rig& rig, double psi_c, const std::string& place) {
-  if (psi_c == 0 || psi_c == 1 || same_lens_models(truth, rig)) return;
+  if (psi_c == 0 || psi_c == 1 || vernier::internal::same_lens_models(truth, rig)) return;
   throw Error(
       place,
       fmt::format("sources.calibration = {} cannot scale the difference of lens models: they "

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/estimate/stable_coordinates.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+#include "calib/board_target.h"
+#include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/estimate/covariance_curvature.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_difference.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/simulated_board.h"
+#include "calib/statistics/distributions.h"
+#include "calib/uncertainty/sampled_propagation.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+
+using namespace internal;
+
+namespace {
+
+/// The cameras of the tests with a longer lens: 12° of view at a focal length of 3000 px.
+Rig rig_with_lens(double f_px, const CameraModel& model = Radial1{}) {
+  Rig rig = test::stereo_rig(model);
+  for (Camera& camera : rig.cameras) {
+    camera.parameters[0] *= f_px / 525;
+    camera.parameters.tail(camera.parameters.size() - 4).setZero();
+  }
+  return rig;
+}
+
+RigEstimate calibrated(const Rig& rig, std::uint64_t seed, const CameraModel& model = Radial1{}) {
+  const double f_px = rig.cameras[0].f_px();
+  const auto board = simulate_board(
+      rig, {}, {.seed = seed, .frames = 20, .distance_m = f_px / 1000, .tilt_rad = 0.7});
+  return calibrate(board.observations,
+                   {.model = model, .pixel_sigma_px = 0.2, .white_noise = true});
+}
+
+const RigEstimate& narrow() {
+  static const RigEstimate estimate = calibrated(rig_with_lens(3000), 1);
+  return estimate;
+}
+
+Eigen::VectorXd sigma_of(const RigEstimate& estimate) {
+  return estimate.covariance->matrix.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+double squared_distance(const Eigen::VectorXd& delta, const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd d = C.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled = d.cwiseInverse().asDiagonal() * C * d.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd z = delta.cwiseQuotient(d);
+  return z.dot(Eigen::LLT<Eigen::MatrixXd>(scaled).solve(z));
+}
+
+TEST(StableCoordinates, AreTheTangentToFirstOrder) {
+  const std::vector<RigEstimate> estimates{narrow(), calibrated(test::stereo_rig(OpenCv4{}), 2,
+                                                                OpenCv4{}),
+                                           calibrated(test::stereo_rig(Fisheye4{}), 3, Fisheye4{})};
+  for (const RigEstimate& estimate : estimates) {
+    const StableCoordinates about(estimate.rig, estimate.covariance->matrix);
+    const RigSampler sampler(estimate);
+    const Eigen::VectorXd sigma = sigma_of(estimate);
+    for (std::uint32_t trial = 0; trial < 5; ++trial) {
+      constexpr double small = 1e-5;
+      const Eigen::VectorXd delta = sampler.deviation(small, 4, trial);
+      const auto moved = about.try_rig(delta);
+      ASSERT_TRUE(moved);
+      const auto off = [&](const Eigen::VectorXd& found) {
+        return (found - delta).cwiseQuotient(sigma).norm() / small;
+      };
+      EXPECT_LT(off(difference(moved->rig, estimate.rig)), 1e-2);
+      EXPECT_LT(off(about.try_coordinates(retract(estimate.rig, delta)).value()), 1e-2);
+      EXPECT_LT(off(about.try_coordinates(moved->rig).value()), 1e-4);
+    }
+  }
+}
+
+TEST(StableCoordinates, DescribeTheErrorsOfANarrowLensThatTheTangentDoesNot) {
+  // 40 independent calibrations; two-sided false alarm 1e-4 for the mean of the squared distances.
+  const Rig truth = rig_with_lens(3000);
+  double stable = 0, tangent = 0;
+  constexpr int trials = 40;
+  for (int i = 0; i < trials; ++i) {
+    const RigEstimate found = calibrated(truth, 100 + static_cast<std::uint64_t>(i));
+    const Eigen::MatrixXd& C = found.covariance->matrix;
+    const StableCoordinates about(found.rig, C);
+    stable += squared_distance(about.try_coordinates(truth).value(), C);
+    tangent += squared_distance(difference(truth, found.rig), C);
+  }
+  const double dof = trials * 16;
+  EXPECT_GT(stable, chi_squared_quantile(5e-5, dof));
+  EXPECT_LT(stable, chi_squared_quantile(1 - 5e-5, dof));
+  EXPECT_GT(tangent, 2 * dof);
+}
+
+TEST(StableCoordinates, IndependentCalibrationsOfANarrowLensAgree) {
+  // 20 pairs; one-sided false alarm 1e-4.
+  const Rig truth = rig_with_lens(3000);
+  double sum = 0;
+  constexpr int pairs = 20;
+  for (int i = 0; i < pairs; ++i) {
+    const RigEstimate a = calibrated(truth, 200 + static_cast<std::uint64_t>(i)),
+                      b = calibrated(truth, 300 + static_cast<std::uint64_t>(i));
+    const RigDifference d = rig_difference(a.rig, *a.covariance, b.rig, *b.covariance);
+    EXPECT_EQ(d.dof, 16);
+    sum += d.mahalanobis2;
+  }
+  EXPECT_LT(sum, chi_squared_quantile(1 - 1e-4, pairs * 16));
+}
+
+TEST(StableCoordinates, SampledProjectionsOfANarrowLensAreTheLinearOnes) {
+  const RigSampler sampler(narrow());
+  const RigAndBoards joint = rig_and_boards(narrow(), CovarianceChoice::honest);
+  constexpr double distance_m = 3;
+  for (int camera : {0, 1}) {
+    for (const auto fixed_to : {PointFixedTo::boards, PointFixedTo::first_camera}) {
+      if (camera == 0 && fixed_to == PointFixedTo::first_camera) continue;  // tens of pixels
+      std::vector<FixedPoint> points;
+      for (const Eigen::Vector2d q : {Eigen::Vector2d(320, 240), {100, 100}, {500, 400}}) {
+        points.push_back({distance_m * unproject(narrow().rig.cameras[camera], q)});
+      }
+      const ProjectionUncertainty linear(joint, camera, fixed_to);
+      const auto drawn = sampled_projection(sampler, joint, camera, fixed_to, points,
+                                            {.samples = 1000, .seed = 5});
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double expected = worst_sd(linear.covariance_of_point(points[k].x_camera));
+        EXPECT_NEAR(worst_sd(drawn[k].covariance), expected, 0.25 * expected)
+            << camera << " " << static_cast<int>(fixed_to) << " " << k;
+      }
+    }
+  }
+}
+
+TEST(StableCoordinates, WhatHasNoVarianceDoesNotMove) {
+  RigEstimate held = narrow();
+  Eigen::MatrixXd& C = held.covariance->matrix;
+  for (const Eigen::Index i : {1, 2, 10, 11, 12, 13, 14, 15}) {
+    C.row(i).setZero();
+    C.col(i).setZero();
+  }
+  const StableCoordinates about(held.rig, C);
+  const auto moved = about.try_rig(RigSampler(held).deviation(1, 6, 0));
+  ASSERT_TRUE(moved);
+  const Rig& rig = moved->rig;
+  EXPECT_NE(rig.cameras[0].f_px(), held.rig.cameras[0].f_px());
+  EXPECT_EQ(rig.cameras[0].ax(), held.rig.cameras[0].ax());
+  EXPECT_EQ(rig.cameras[0].ox_px(), held.rig.cameras[0].ox_px());
+  EXPECT_EQ(rig.T_camera_first[1].R, held.rig.T_camera_first[1].R);
+  EXPECT_EQ(rig.T_camera_first[1].t, held.rig.T_camera_first[1].t);
+}
+
+TEST(StableCoordinates, NoDeviationIsTheRigToTheBit) {
+  const StableCoordinates about(narrow().rig, narrow().covariance->matrix);
+  const auto moved = about.try_rig(Eigen::VectorXd::Zero(16));
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(parameters(moved->rig), parameters(narrow().rig));
+}
+
+TEST(StableCoordinates, FarFromTheMeanTheyAreTheTangent) {
+  const StableCoordinates about(narrow().rig, narrow().covariance->matrix);
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(16);
+  delta[0] = -2 * narrow().rig.cameras[0].f_px();  // no lens
+  EXPECT_FALSE(about.try_rig(delta));
+  EXPECT_EQ(parameters(about.rig(delta).rig), parameters(retract(narrow().rig, delta)));
+  EXPECT_FALSE(about.try_coordinates(retract(narrow().rig, delta)));
+}
+
+TEST(CovarianceCurvature, TellsALinearCovarianceFromOneThatIsNot) {
+  EXPECT_LT(covariance_curvature(narrow().rig, *narrow().covariance), largest_curvature);
+  EXPECT_FALSE(curvature_warning(narrow().rig, *narrow().covariance));
+  const RigEstimate bad = calibrated(rig_with_lens(6000, OpenCv4{}), 7, OpenCv4{});
+  EXPECT_GT(covariance_curvature(bad.rig, *bad.covariance), largest_curvature);
+  ASSERT_FALSE(bad.calibration->trust_warnings.empty());
+  EXPECT_NE(bad.calibration->trust_warnings.back().find("no covariance describes its errors"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

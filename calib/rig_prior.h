@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,15 +12,22 @@
 
 namespace vernier {
 
+namespace internal {
+class StableCoordinates;
+}  // namespace internal
+
 /// A Gaussian prior of some or all parameters of a rig: the first term of the unified cost (Tina
 /// Memo 2017-001, Eq. 1),
 ///
 ///     χ²_prior(a) = δᵀ P δ,   δ = difference(a, mean)
 ///
-/// with rotations in the left tangent about the mean's, in which it is exactly quadratic.
+/// with rotations in the left tangent about the mean's. If the prior is the result of a calibration
+/// and knows all parameters, δ are the coordinates in which its errors are closest to normal
+/// (calib/estimate/stable_coordinates.h); to first order they are the same.
 struct RigPrior {
   Rig mean;
   Eigen::MatrixXd information;  ///< P, parameters x parameters; zero for unknown parameters
+  std::shared_ptr<const internal::StableCoordinates> coordinates;  ///< null: the tangent
 };
 
 /// A prior from another source: `covariance` is over the parameters it names, any subset of those
@@ -56,10 +64,14 @@ struct ParameterPrior {
 GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterPrior>& known);
 RigPrior rig_prior(const Rig& like, const std::vector<ParameterPrior>& known);
 
+/// The same prior about another mean.
+RigPrior with_mean(const RigPrior& prior, Rig mean);
+
 /// δ at `rig` and its derivative with respect to the left tangent at `rig`.
 struct PriorOffset {
   Eigen::VectorXd delta;
-  Eigen::MatrixXd by_rig;  ///< the identity except for rotations, where it is J_l⁻¹
+  /// In the tangent the identity except for rotations, where it is J_l⁻¹.
+  Eigen::MatrixXd by_rig;
 };
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig);
 

@@ -29,9 +29,9 @@ struct SamplingOptions {
 ///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ
 ///
 /// ⊕ moves a rig along the valley of rigs that see nearly the same
-/// (calib/estimate/stable_coordinates.h); to first order it is the tangent of calib/rig.h, and where
-/// a draw is too far from the mean, exactly that. ψ_c scales standard deviations: at ψ_c = 2 every
-/// deviation is exactly twice that at ψ_c = 1 under the same seed.
+/// (calib/estimate/stable_coordinates.h); to first order it is the tangent of calib/rig.h, and
+/// where a draw is too far from the mean, exactly that. ψ_c scales standard deviations: at ψ_c = 2
+/// every deviation is exactly twice that at ψ_c = 1 under the same seed.
 class RigSampler {
  public:
   /// Throws Error if the estimate has no covariance or one that is not positive semi-definite.

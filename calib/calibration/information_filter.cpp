@@ -8,6 +8,7 @@
 #include "calib/calibration/combine_evidence.h"
 #include "calib/combine.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/joint_calibration.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -40,7 +41,8 @@ InformationFilterResult information_filter(const std::vector<CombineInput>& inpu
   InformationFilterResult filtered{known.rig, known.covariance, 0, "", 1, ""};
   const Eigen::MatrixXd& honest = batch.joint.estimate.covariance->matrix;
   const Eigen::MatrixXd own = full_covariance(known).matrix;
-  const Eigen::VectorXd d = difference(known.rig, batch.joint.estimate.rig);
+  const Eigen::VectorXd d =
+      StableCoordinates(batch.joint.estimate.rig, honest).coordinates(known.rig);
   const Eigen::MatrixXd& C = *batch.joint.estimate.covariance_mvb;
   const std::vector<std::string> names = parameter_names(known.rig);
   for (Eigen::Index i = 0; i < d.size(); ++i) {

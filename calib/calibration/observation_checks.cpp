@@ -31,6 +31,7 @@ constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
 // A lens bends three by three corners by at most 0.12 of their spacing up to 85 degrees from its
 // axis; one row in nine reversed, or numbered from the next corner on, leaves a sixth of the
 // corners and more above twice that.
+constexpr double most_misfits = 0.2;  ///< of all views: more are the rule, not the exception
 constexpr double local_misfit_spacings = 0.25, local_misfit_share = 0.15;
 
 /// Distance between neighbouring corners in the image: that on the target, times the square root of
@@ -81,8 +82,12 @@ double share_unlike_neighbours(const std::vector<Eigen::Vector3d>& target_m,
   return judged == 0 ? 1 : static_cast<double>(unlike) / judged;
 }
 
-void check_grids(const BoardObservations& observations,
-                 const std::vector<BoardHomography>& homographies) {
+/// Doubts views whose corners are not on a plane. Throws Error if they are not few. Flags them.
+std::vector<bool> check_grids(const BoardObservations& observations,
+                              const std::vector<BoardHomography>& homographies,
+                              ObservationDiagnosis& diagnosis) {
+  std::vector<Error> errors;
+  std::vector<bool> misfit(homographies.size());
   for (std::size_t i = 0; i < homographies.size(); ++i) {
     const double spacing = corner_spacing_px(homographies[i], observations.target_m);
     if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing) ||
@@ -90,13 +95,19 @@ void check_grids(const BoardObservations& observations,
             local_misfit_share) {
       continue;
     }
-    throw Error(
+    misfit[i] = true;
+    errors.emplace_back(
         view_label(observations.views[i]),
         fmt::format("its corners do not fit a flat board (residual {:.0f} px at a corner spacing "
                     "of {:.0f} px)",
                     homographies[i].rms_px, spacing),
         "check that rows and columns of the board are not exchanged and how corners are numbered");
+    diagnosis.frame_doubts.push_back({observations.views[i].frame, errors.back().what()});
   }
+  if (static_cast<double>(errors.size()) > most_misfits * static_cast<double>(misfit.size())) {
+    throw errors.front();
+  }
+  return misfit;
 }
 
 /// Whether the corners form evenly spaced columns, as on a chessboard. Corners of tags do not; they
@@ -120,10 +131,12 @@ bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
 /// Throws Error for views mirrored relative to the others; a trust warning if all are.
 void check_mirrored(const BoardObservations& observations,
                     const std::vector<BoardHomography>& homographies,
+                    const std::vector<bool>& misfit,
                     ObservationDiagnosis& diagnosis) {
   std::vector<std::string> mirrored, others;
   std::map<int, std::pair<int, int>> of_camera;  // mirrored, all
   for (std::size_t i = 0; i < homographies.size(); ++i) {
+    if (misfit[i]) continue;
     auto& [wrong, all] = of_camera[observations.views[i].camera];
     const bool front = homographies[i].is_front_facing;
     (front ? others : mirrored).push_back(view_label(observations.views[i]));
@@ -285,8 +298,8 @@ ObservationDiagnosis check_observations(const BoardObservations& observations) {
   for (const BoardView& view : observations.views) {
     homographies.push_back(board_homography(observations.target_m, view));
   }
-  check_grids(observations, homographies);
-  check_mirrored(observations, homographies, diagnosis);
+  const std::vector<bool> misfit = check_grids(observations, homographies, diagnosis);
+  check_mirrored(observations, homographies, misfit, diagnosis);
   check_repeats(observations, diagnosis);
   check_sizes(observations, diagnosis);
   count_unpaired(observations, diagnosis);

@@ -28,10 +28,10 @@ struct ObservationDiagnosis {
 /// Checks corners before solving, with one homography per view (no camera model needed). Call
 /// check_and_sort first. Throws Error, naming frame, camera and image, for
 ///
-///  - corners that are not on a plane (rows and columns exchanged, wrong numbering): residual of
-///    the homography above half the spacing of corners, and more than 15 % of the corners off a
-///    homography with their eight neighbours by a quarter of the spacing, since a wide lens bends
-///    the board as a whole;
+///  - corners that are not on a plane (rows and columns exchanged, wrong numbering) in more than a
+///    fifth of the views; in fewer the frame is doubted. Residual of the homography above half the
+///    spacing of corners, and more than 15 % of the corners off a homography with their eight
+///    neighbours by a quarter of the spacing, since a wide lens bends the board as a whole;
 ///  - some views mirrored relative to the others: determinant of the homography of opposite sign;
 ///  - a repeated view: corners of two frames of a camera within 0.001 px;
 ///  - identical left and right images: corners of two cameras in a frame within 0.05 px.

@@ -10,6 +10,7 @@
 #include "calib/data_and_prior.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/estimate/prior_consistency.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
@@ -51,7 +52,12 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   }
   const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
   const Eigen::MatrixXd C = V * full_covariance(prior).matrix * V.transpose();
-  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
+  const bool is_whole =
+      free.size() == held.size() && prior.covariance.kind != CovarianceKind::prior;
+  const Eigen::VectorXd moved =
+      values_by_tangent(rig, held) *
+      (is_whole ? StableCoordinates(prior.rig, full_covariance(prior).matrix).coordinates(rig)
+                : difference(rig, prior.rig));
   Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
   if (!given.empty()) {  // condition the prior on the values of its held parameters

@@ -154,7 +154,7 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   std::vector<std::string> names;
   names.reserve(known.size());
   for (const Eigen::Index i : known) names.push_back(parameter_names(rig)[i]);
-  const Eigen::VectorXd offset = difference(rig, prior.mean)(known);
+  const Eigen::VectorXd offset = prior_offset(prior, rig).delta(known);
   const Eigen::MatrixXd before = prior.information(known, known).inverse();
   PriorConsistency agreement;
   try {

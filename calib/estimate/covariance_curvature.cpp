@@ -6,7 +6,9 @@
 
 #include <limits>
 
+#include "calib/covariance.h"
 #include "calib/estimate/stable_coordinates.h"
+#include "calib/rig.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "calib/statistics/scaled_root.h"

@@ -170,22 +170,11 @@ std::optional<StableDifference> stable_difference(const Rig& a,
   for (Eigen::Index i = 0; i < both.rows(); ++i) {
     if (held.in_a[static_cast<std::size_t>(i)]) both(i, i) = 0;
   }
-  const Eigen::VectorXd sigma = both.diagonal().cwiseMax(0).cwiseSqrt();
   const StableCoordinates about_a(a, both);
-  const auto delta = about_a.try_coordinates(b);
-  if (!delta) return std::nullopt;
-  constexpr double step = 1e-3;  // in sigma
-  Eigen::MatrixXd by_b = Eigen::MatrixXd::Identity(sigma.size(), sigma.size());
-  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
-    if (!(sigma[i] > 0)) continue;
-    const Eigen::VectorXd h = step * sigma[i] * Eigen::VectorXd::Unit(sigma.size(), i);
-    const auto up = about_a.try_coordinates(retract(b, h));
-    const auto down = about_a.try_coordinates(retract(b, -h));
-    if (!up || !down) return std::nullopt;
-    by_b.col(i) = (*up - *down) / (2 * step * sigma[i]);
-  }
-  return StableDifference{*delta,
-                          covariance_a.matrix + by_b * covariance_b.matrix * by_b.transpose()};
+  const auto at = about_a.try_position(b);
+  if (!at) return std::nullopt;
+  return StableDifference{
+      at->delta, covariance_a.matrix + at->by_rig * covariance_b.matrix * at->by_rig.transpose()};
 }
 
 /// d² and its components, over the parameters with a variance.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +18,10 @@
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier {
 
@@ -80,10 +83,16 @@ RigPrior prior_at(const Rig& like,
                   const Covariance& covariance) {
   const std::vector<Eigen::Index> places = places_of(covariance.names, like);
   const Eigen::MatrixXd P = inverse_of(covariance);
-  RigPrior prior{with_held_values(like, values), {}};
+  RigPrior prior{with_held_values(like, values), {}, nullptr};
   const Eigen::MatrixXd K =
       values_by_tangent(prior.mean, all_but(places, like))(places, Eigen::all);
   prior.information = K.transpose() * (0.5 * (P + P.transpose())) * K;
+  if (covariance.kind != CovarianceKind::prior && K.rows() == K.cols()) {
+    const Eigen::MatrixXd E =
+        tangent_by_values(prior.mean, all_but(places, like))(Eigen::all, places);
+    prior.coordinates = std::make_shared<const StableCoordinates>(
+        prior.mean, E * covariance.matrix * E.transpose());
+  }
   return prior;
 }
 
@@ -130,7 +139,22 @@ RigPrior rig_prior(const Rig& like, const std::vector<ParameterPrior>& known) {
   return rig_prior(like, gaussian_prior_of(like, known));
 }
 
+RigPrior with_mean(const RigPrior& prior, Rig mean) {
+  RigPrior moved{std::move(mean), prior.information, nullptr};
+  if (prior.coordinates) {
+    const Eigen::MatrixXd white = ScaledRoot(prior.information).white;
+    moved.coordinates =
+        std::make_shared<const StableCoordinates>(moved.mean, white.transpose() * white);
+  }
+  return moved;
+}
+
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {
+  if (prior.coordinates) {
+    if (auto at = prior.coordinates->try_position(rig)) {
+      return {std::move(at->delta), std::move(at->by_rig)};
+    }
+  }
   PriorOffset offset;
   offset.delta = difference(rig, prior.mean);
   offset.by_rig = Eigen::MatrixXd::Identity(offset.delta.size(), offset.delta.size());
@@ -142,7 +166,8 @@ PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {
 }
 
 double prior_chi2(const RigPrior& prior, const Rig& rig) {
-  const Eigen::VectorXd delta = difference(rig, prior.mean);
+  const Eigen::VectorXd delta =
+      prior.coordinates ? prior.coordinates->coordinates(rig) : difference(rig, prior.mean);
   return delta.dot(prior.information * delta);
 }
 

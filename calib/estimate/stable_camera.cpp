@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calib/base/decompositions.h"
+#include "calib/camera.h"
 #include "calib/pose.h"
 
 namespace vernier::internal {
@@ -19,9 +20,9 @@ constexpr double covered = 0.8;  ///< of width and height: a lens is seldom know
 constexpr std::size_t fewest_pixels = 16;
 /// A standard deviation that moves no pixel by this much does not show.
 constexpr double visible_px = 3e-3;
-constexpr int most_iterations = 50;
+constexpr int most_solver_steps = 50;
 constexpr double converged = 1e-4;  // a step's norm in the residuals: 1e-6 px
-constexpr double least_damping = 1e-6;
+constexpr double smallest_damping = 1e-6;
 
 bool has_image(const Camera& camera) {
   return camera.f_px() > 0 && camera.ax() > 0 && camera.parameters.allFinite();
@@ -125,6 +126,13 @@ Eigen::Vector3d StableCamera::linear_turn(const Eigen::VectorXd& intrinsics) con
   return turn_unit_rad_ * (turns_ * free(intrinsics));
 }
 
+Eigen::Matrix3Xd StableCamera::linear_turn_by_intrinsics() const {
+  Eigen::Matrix3Xd by = Eigen::Matrix3Xd::Zero(3, mean_.parameters.size());
+  if (inverse_.size() == 0) return by;
+  by(Eigen::all, free_) = turn_unit_rad_ * turns_ * sigma_.cwiseInverse().asDiagonal();
+  return by;
+}
+
 std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) const {
   if (free_.empty()) return TurnedCamera{mean_, Eigen::Matrix3d::Identity()};
   if (inverse_.size() == 0) return std::nullopt;
@@ -137,7 +145,7 @@ std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) 
   // Levenberg and Marquardt from the linear model. A minimum other than zero is one all the same:
   // it is what a calibration would find.
   double damping = 0;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < most_solver_steps; ++iteration) {
     const Eigen::VectorXd missing = goal - found->r;
     Eigen::MatrixXd N = found->J.transpose() * found->J;
     const Eigen::VectorXd g = found->J.transpose() * missing;
@@ -151,9 +159,9 @@ std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) 
     if (there && (goal - there->r).norm() < missing.norm()) {
       now = tried;
       found = std::move(there);
-      damping = damping > least_damping ? damping / 10 : 0;
+      damping = damping > smallest_damping ? damping / 10 : 0;
     } else {
-      damping = std::max(least_damping, 10 * damping);
+      damping = std::max(smallest_damping, 10 * damping);
     }
   }
   return now;
@@ -161,7 +169,9 @@ std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) 
 
 std::optional<StableCamera::Coordinates> StableCamera::coordinates(const Camera& camera) const {
   if (free_.empty()) {
-    return Coordinates{camera.parameters - mean_.parameters, Eigen::Matrix3d::Identity()};
+    const auto all = camera.parameters.size();
+    return Coordinates{camera.parameters - mean_.parameters, Eigen::Matrix3d::Identity(),
+                       Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
   }
   if (inverse_.size() == 0) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(free_.size());
@@ -171,14 +181,26 @@ std::optional<StableCamera::Coordinates> StableCamera::coordinates(const Camera&
   const Eigen::MatrixXd D = C * inverse_;
   const Eigen::VectorXd moved_by = free(camera.parameters - mean_.parameters);
   TurnedCamera now{camera, rotation_from_vector(turn_unit_rad_ * (turns_ * moved_by))};
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < most_solver_steps; ++iteration) {
     const auto found = residual(now);
     if (!found) return std::nullopt;
     const Eigen::Vector3d missing = D * found->r;
     const Eigen::VectorXd y = inverse_ * found->r;
     if (missing.norm() <= converged * (1 + y.norm())) {
-      Coordinates result{camera.parameters - mean_.parameters, now.turn};
+      const auto all = camera.parameters.size();
+      Coordinates result{camera.parameters - mean_.parameters, now.turn,
+                         Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
       result.stable(free_) = sigma_.cwiseProduct(y.head(n));
+      // The turn follows the intrinsics so that D r stays 0.
+      const Eigen::MatrixXd& J = found->J;
+      const Eigen::Matrix3d slope = D * J.rightCols<3>();
+      const Eigen::MatrixXd turned = -slope.inverse() * (D * J.leftCols(n));
+      const Eigen::MatrixXd moved_y =
+          inverse_.topRows(n) * (J.leftCols(n) + J.rightCols<3>() * turned);
+      const Eigen::VectorXd per_sigma = sigma_.cwiseInverse();
+      result.by_intrinsics(free_, free_) = sigma_.asDiagonal() * moved_y * per_sigma.asDiagonal();
+      result.turn_by_intrinsics(Eigen::all, free_) =
+          turn_unit_rad_ * turned * per_sigma.asDiagonal();
       return result;
     }
     const Eigen::Matrix3d slope = D * found->J.rightCols<3>();

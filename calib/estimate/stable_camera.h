@@ -32,16 +32,21 @@ class StableCamera {
   /// `covariance`: of the intrinsics; those without a variance stay as they are.
   StableCamera(const Camera& mean, const Eigen::MatrixXd& covariance);
 
-  /// The turn, as a rotation vector, that goes with a small change of the intrinsics.
+  /// The turn, as a rotation vector, that goes with a small change of the intrinsics, and its
+  /// derivative.
   Eigen::Vector3d linear_turn(const Eigen::VectorXd& intrinsics) const;
+  Eigen::Matrix3Xd linear_turn_by_intrinsics() const;
 
   /// The camera with these parameters and its turn. std::nullopt if none is found.
   std::optional<TurnedCamera> camera(const Eigen::VectorXd& stable) const;
 
-  /// The parameters of a camera of the same model, and its turn.
+  /// The parameters of a camera of the same model, its turn, and their derivatives by the
+  /// intrinsics (the turn's on the left).
   struct Coordinates {
     Eigen::VectorXd stable;
     Eigen::Matrix3d turn;
+    Eigen::MatrixXd by_intrinsics;
+    Eigen::Matrix3Xd turn_by_intrinsics;
   };
   std::optional<Coordinates> coordinates(const Camera& camera) const;
 

@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "calib/camera.h"
+#include "calib/estimate/stable_camera.h"
 #include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier::internal {
 namespace {
@@ -62,29 +63,53 @@ MovedRig StableCoordinates::rig(const Eigen::VectorXd& delta) const {
   return {retract(mean_, delta), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
 }
 
-std::optional<Eigen::VectorXd> StableCoordinates::try_coordinates(const Rig& rig) const {
-  Eigen::VectorXd delta = difference(rig, mean_);
-  Eigen::Matrix3d first_turn = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d first_linear = Eigen::Vector3d::Zero();
+std::optional<StablePosition> StableCoordinates::try_position(const Rig& rig) const {
+  StablePosition at{difference(rig, mean_), {}};
+  at.by_rig = Eigen::MatrixXd::Identity(at.delta.size(), at.delta.size());
+  std::optional<StableCamera::Coordinates> first;
+  Eigen::Vector3d first_linear;
+  Eigen::Matrix3Xd first_linear_by;
   for (std::size_t c = 0; c < mean_.cameras.size(); ++c) {
-    const auto at = cameras_[c].coordinates(rig.cameras[c]);
-    if (!at) return std::nullopt;
-    delta.segment(intrinsics_index(mean_, static_cast<int>(c)), at->stable.size()) = at->stable;
-    const Eigen::Vector3d v = cameras_[c].linear_turn(at->stable);
+    const auto found = cameras_[c].coordinates(rig.cameras[c]);
+    if (!found) return std::nullopt;
+    const int i = intrinsics_index(mean_, static_cast<int>(c));
+    const auto n = found->stable.size();
+    at.delta.segment(i, n) = found->stable;
+    at.by_rig.block(i, i, n, n) = found->by_intrinsics;
+    const Eigen::Vector3d v = cameras_[c].linear_turn(found->stable);
+    const Eigen::Matrix3Xd v_by = cameras_[c].linear_turn_by_intrinsics() * found->by_intrinsics;
     if (c == 0) {
-      first_turn = at->turn;
+      first = found;
       first_linear = v;
+      first_linear_by = v_by;
       continue;
     }
-    if (pose_known_[c]) continue;
+    const int p = pose_index(mean_, static_cast<int>(c));
     const Pose &mean = mean_.T_camera_first[c], &T = rig.T_camera_first[c];
-    auto tangent = delta.segment<6>(pose_index(mean_, static_cast<int>(c)));
-    tangent.head<3>() =
-        vector_from_rotation(at->turn.transpose() * T.R * first_turn * mean.R.transpose()) + v -
-        mean.R * first_linear;
-    tangent.tail<3>() = at->turn.transpose() * T.t - mean.t + v.cross(mean.t);
+    if (pose_known_[c]) continue;
+    const Eigen::Matrix3d back = found->turn.transpose();
+    const Eigen::Vector3d rho = vector_from_rotation(back * T.R * first->turn * mean.R.transpose());
+    at.delta.segment<3>(p) = rho + v - mean.R * first_linear;
+    at.delta.segment<3>(p + 3) = back * T.t - mean.t + v.cross(mean.t);
+
+    // exp([ρ]) = V_cᵀ R V_0 R̄ᵀ and t* = V_cᵀ t, by the pose, the turns and their linear parts.
+    const Eigen::Matrix3d J = left_jacobian(rho).inverse();
+    const auto n_first = first->stable.size();
+    at.by_rig.block(p, 0, 3, n_first) =
+        J * back * T.R * first->turn_by_intrinsics - mean.R * first_linear_by;
+    at.by_rig.block(p, i, 3, n) = v_by - J * back * found->turn_by_intrinsics;
+    at.by_rig.block<3, 3>(p, p) = J * back;
+    at.by_rig.block(p + 3, i, 3, n) =
+        back * hat(T.t) * found->turn_by_intrinsics - hat(mean.t) * v_by;
+    at.by_rig.block<3, 3>(p + 3, p + 3) = back;
   }
-  return delta;
+  return at;
+}
+
+std::optional<Eigen::VectorXd> StableCoordinates::try_coordinates(const Rig& rig) const {
+  auto at = try_position(rig);
+  if (!at) return std::nullopt;
+  return std::move(at->delta);
 }
 
 Eigen::VectorXd StableCoordinates::coordinates(const Rig& rig) const {

@@ -18,6 +18,12 @@ struct MovedRig {
   Eigen::Vector3d linear_turn;  ///< its rotation vector in the linear model
 };
 
+/// Where a rig is, and how that changes with its tangent (calib/rig.h).
+struct StablePosition {
+  Eigen::VectorXd delta;
+  Eigen::MatrixXd by_rig;
+};
+
 /// Coordinates of a rig about a mean that agree with the tangent of calib/rig.h to first order, in
 /// which calibration errors are closer to normal. The tangent of a narrow lens is curved: centre
 /// and direction of each camera are badly known, their sum in the image well, and the sum is a
@@ -40,6 +46,7 @@ class StableCoordinates {
   MovedRig rig(const Eigen::VectorXd& delta) const;
 
   /// The coordinates of a rig with the same models; std::nullopt if it has none.
+  std::optional<StablePosition> try_position(const Rig& rig) const;
   std::optional<Eigen::VectorXd> try_coordinates(const Rig& rig) const;
   /// The same; where there are none, difference(rig, mean).
   Eigen::VectorXd coordinates(const Rig& rig) const;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/pose.h"
 #include "calib/rig_and_boards.h"
 #include "calib/statistics/draw_sources.h"

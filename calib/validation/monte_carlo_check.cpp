@@ -58,8 +58,10 @@ class Copies {
       // P = root rootᵀ: the mean's covariance is the pseudo-inverse, of root whiteᵀ z.
       RandomStream draws(of_prior(place(trial, 0), static_cast<std::uint32_t>(k)));
       const Eigen::MatrixXd& white = priors_[k].white;
-      problem.priors[k].mean =
-          retract(state_.rig, white.transpose() * draws.normals(static_cast<int>(white.rows())));
+      const Eigen::VectorXd off = white.transpose() * draws.normals(static_cast<int>(white.rows()));
+      const RigPrior about = with_mean(problem.priors[k], state_.rig);
+      problem.priors[k] = with_mean(
+          about, about.coordinates ? about.coordinates->rig(off).rig : retract(state_.rig, off));
     }
     return Resolver(observations_, state_, problem).resolve(pixels(trial));
   }

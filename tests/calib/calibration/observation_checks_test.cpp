@@ -219,7 +219,11 @@ TEST_F(ObservationChecks, WrongNumberingIsNamedBeforeAnyLens) {
     const auto complaint_with = [&](const auto& spoil) {
       BoardObservations spoilt = good;
       spoil(spoilt.views[v]);
-      return complaint_of(spoilt).find("its corners do not fit a flat board") != std::string::npos;
+      const auto doubts = diagnosis_of(spoilt).frame_doubts;
+      return std::any_of(doubts.begin(), doubts.end(), [&](const FrameDoubt& doubt) {
+        return doubt.frame == good.views[v].frame &&
+               doubt.text.find("its corners do not fit a flat board") != std::string::npos;
+      });
     };
     EXPECT_FALSE(complaint_with([](BoardView&) {}));
     EXPECT_TRUE(complaint_with([&](BoardView& view) { reverse_rows(view, columns, 0, 100); }));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -163,6 +164,38 @@ TEST(Outliers, AWholeViewMayBeOne) {
 
 // Plain least squares with views numbered the wrong way round, or swapped, ends so far away that
 // least squares without them, begun there, finds another valley.
+// Corners of one image that are on no plane: they do not stop the calibration from the others.
+TEST(Outliers, AnImageThatFitsNoBoardIsLeftOutAndNamed) {
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 23, .frames = 20});
+  for (const double share : {0.3, 1.0}) {
+    BoardObservations spoilt = board.observations, clean = board.observations;
+    BoardView& view = spoilt.views[9];
+    std::set<CornerName> wrong;
+    RandomStream draws({.seed = 24, .source = 200});
+    clean.views[9].ids.clear();
+    clean.views[9].pixels_px.clear();
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (static_cast<double>(i % 10) < 10 * share) {
+        view.pixels_px[i] += 40 * draws.normals(2);
+        wrong.emplace(view.frame, view.camera, view.ids[i]);
+      } else {
+        clean.views[9].ids.push_back(view.ids[i]);
+        clean.views[9].pixels_px.push_back(view.pixels_px[i]);
+      }
+    }
+    if (clean.views[9].ids.empty()) clean.views.erase(clean.views.begin() + 9);
+    const RigEstimate found = calibrate(spoilt), reference = calibrate(clean);
+    const std::set<CornerName> left_out = names_of(found.calibration->outliers);
+    EXPECT_TRUE(std::includes(left_out.begin(), left_out.end(), wrong.begin(), wrong.end()));
+    EXPECT_LE(left_out.size(), 54u);
+    EXPECT_LT(worst_sigmas(found.rig, reference.rig, *reference.covariance_mvb), 0.5) << share;
+    const auto& doubts = found.calibration->trust_warnings;
+    ASSERT_EQ(doubts.size(), 1u);
+    EXPECT_NE(doubts[0].find("frame 4, camera 1: its corners do not fit a flat board"),
+              std::string::npos);
+  }
+}
+
 TEST(Outliers, LeastSquaresBeginsAgainAtTheRobustMinimum) {
   const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 25, .frames = 12});
   BoardObservations turned = board.observations, swapped = board.observations;

@@ -39,10 +39,12 @@ Rig rig_with_lens(double f_px, const CameraModel& model = Radial1{}) {
   return rig;
 }
 
+SimulatedBoardOptions views_of(const Rig& rig, std::uint64_t seed) {
+  return {.seed = seed, .frames = 20, .distance_m = rig.cameras[0].f_px() / 1000, .tilt_rad = 0.7};
+}
+
 RigEstimate calibrated(const Rig& rig, std::uint64_t seed, const CameraModel& model = Radial1{}) {
-  const double f_px = rig.cameras[0].f_px();
-  const auto board = simulate_board(
-      rig, {}, {.seed = seed, .frames = 20, .distance_m = f_px / 1000, .tilt_rad = 0.7});
+  const auto board = simulate_board(rig, {}, views_of(rig, seed));
   return calibrate(board.observations,
                    {.model = model, .pixel_sigma_px = 0.2, .white_noise = true});
 }
@@ -64,8 +66,8 @@ double squared_distance(const Eigen::VectorXd& delta, const Eigen::MatrixXd& C) 
 }
 
 TEST(StableCoordinates, AreTheTangentToFirstOrder) {
-  const std::vector<RigEstimate> estimates{narrow(), calibrated(test::stereo_rig(OpenCv4{}), 2,
-                                                                OpenCv4{}),
+  const std::vector<RigEstimate> estimates{narrow(),
+                                           calibrated(test::stereo_rig(OpenCv4{}), 2, OpenCv4{}),
                                            calibrated(test::stereo_rig(Fisheye4{}), 3, Fisheye4{})};
   for (const RigEstimate& estimate : estimates) {
     const StableCoordinates about(estimate.rig, estimate.covariance->matrix);
@@ -140,6 +142,40 @@ TEST(StableCoordinates, SampledProjectionsOfANarrowLensAreTheLinearOnes) {
       }
     }
   }
+}
+
+TEST(StableCoordinates, DerivativesAreThoseOfDifferences) {
+  const Rig truth = rig_with_lens(3000);
+  const RigEstimate& mean = narrow();
+  const StableCoordinates about(mean.rig, mean.covariance->matrix);
+  const Eigen::VectorXd sigma = sigma_of(mean);
+  const Eigen::MatrixXd found = about.try_position(truth)->by_rig;
+  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
+    const Eigen::VectorXd step = 1e-3 * sigma[i] * Eigen::VectorXd::Unit(sigma.size(), i);
+    const Eigen::VectorXd numeric = (about.try_coordinates(retract(truth, step)).value() -
+                                     about.try_coordinates(retract(truth, -step)).value()) /
+                                    (2 * step[i]);
+    const Eigen::VectorXd off = (found.col(i) - numeric).cwiseQuotient(sigma) * sigma[i];
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-4) << i;
+  }
+}
+
+TEST(StableCoordinates, ACalibrationOfANarrowLensServesAsAPrior) {
+  // 15 pairs of halves; one-sided false alarm 1e-4.
+  const Rig truth = rig_with_lens(3000);
+  double sum = 0;
+  constexpr int trials = 15;
+  for (int i = 0; i < trials; ++i) {
+    const RigEstimate first = calibrated(truth, 400 + static_cast<std::uint64_t>(i));
+    const auto board =
+        simulate_board(truth, {}, views_of(truth, 500 + static_cast<std::uint64_t>(i)));
+    CalibrationOptions options{.model = Radial1{}, .pixel_sigma_px = 0.2, .white_noise = true};
+    options.prior = gaussian_prior_of(first, "first");
+    const RigEstimate both = calibrate(board.observations, options);
+    const Eigen::MatrixXd& C = both.covariance->matrix;
+    sum += squared_distance(StableCoordinates(both.rig, C).try_coordinates(truth).value(), C);
+  }
+  EXPECT_LT(sum, chi_squared_quantile(1 - 1e-4, trials * 16));
 }
 
 TEST(StableCoordinates, WhatHasNoVarianceDoesNotMove) {

@@ -83,6 +83,18 @@ class Odometry(verb_calls.ProgramCase):
         self.refused(*call, '--truth', 'true.txt', '-o', 'true.txt', says='true.txt')
         self.assertIn('0 0 0', (self.folder / 'true.txt').read_text())
 
+    def test_half_of_the_image_that_moves_otherwise_is_told(self):
+        (self.folder / 'wall.json').write_text(json.dumps(rig()))
+        upper, lower, half = wall(1), wall(2), SIZE[1] // 2
+        for i in range(3):
+            for side, x in (('l', 0), ('r', BASELINE_M)):
+                write_pgm(self.folder / f'h{side}{i}.pgm', image(upper, i * STEP_M + x)[:half] +
+                          image(lower, 3 * i * STEP_M + x)[half:])
+        run = self.run_program('odometry', '--left', 'hl*.pgm', '--right', 'hr*.pgm', '--rig', 'wall.json', '--json')
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertEqual(json.loads(run.stdout)['ambiguous_steps'], 2)
+        self.assertIn('agree on another motion', run.stderr)
+
     def test_12_bits_in_a_file_of_16(self):
         (self.folder / 'wall.json').write_text(json.dumps(rig()))
         grey = wall()

@@ -141,6 +141,21 @@ class World(verb_calls.ProgramCase):
         told = self.run_program('import', 'tracks.txt', '-o', 't.world.toml', '--unit', '1.5')
         self.assertNotIn('no unit of length', told.stderr)
 
+    def test_views_are_those_of_the_camera_at_its_height(self):
+        seen = {height: self.done('info', 'workshop', '--poses', 10, '--height-m', height)['aliasing']
+                for height in (0.6, 1.2)}
+        self.assertEqual([seen[height].pop('height_m') for height in (0.6, 1.2)], [0.6, 1.2])
+        self.assertEqual(seen[1.2]['poses'], 10)
+        # a camera under the ceiling, where nothing is free, and a route of which a part is blocked
+        self.assertIn('lower the camera', self.refused('info', 'workshop', '--poses', 10, '--height-m', 2.9))
+        self.done('import', 'room.ply', '-o', 'part.world.toml')
+        text = (self.folder / 'part.world.toml').read_text()
+        (self.folder / 'part.world.toml').write_text(
+            text[:text.index('[[route]]')] + '[[route]]\npoints_m = [[1.5, 1.5], [-4, 1.5]]\n')
+        run = self.run_program('info', 'part.world.toml', '--poses', 10)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('leads through something in', run.stderr)
+
     def test_what_is_no_world_is_to_be_imported(self):
         self.assertIn('import it first', self.refused('info', 'room.ply'))
 

@@ -19,7 +19,8 @@ struct ToldRig {
 };
 
 /// The rigs that an estimator is told of one true rig, by the number of the draw: that of the
-/// trial, or 2³¹ + block for a map. All scale the error by psi_c in the truth's tangent,
+/// trial, or 2³¹ + block for a map. All scale the error by psi_c in the truth's tangent
+/// (draws from a covariance as calib/sampler.h has it),
 ///
 ///     told = truth ⊕ ψ_c (a ⊖ truth)
 ///

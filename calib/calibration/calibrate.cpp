@@ -11,14 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "calib/board/board_pose.h"
-#include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/calibration_problem.h"
 #include "calib/calibration/change_findings.h"
 #include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/doubted_frames.h"
 #include "calib/calibration/effects.h"
 #include "calib/calibration/lens_field.h"
 #include "calib/calibration/observation_checks.h"
@@ -38,7 +37,6 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
-#include "calib/solver/initial_rig.h"
 #include "calib/solver/linearised_cost.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "calib/solver/normal_equations.h"
@@ -145,12 +143,7 @@ bool begin_without_doubted_frames(Solution& s) {
     s.state.rig = start.rig;
     s.state.warp_m = start.warp_m;
     replace_poses(s.state, start);
-    const auto target_m = warped_target(s.observations.target_m, start.warp_m);
-    for (const FrameDoubt& doubt : s.diagnosis.frame_doubts) {
-      const std::vector<BoardView> views = at_frames(s.observations, {doubt.frame}).views;
-      s.state.T_first_board[frame_index(s.state.frames, doubt.frame)] =
-          find_board_pose(target_m, views, start.rig).T_first_board;
-    }
+    place_doubted(s.diagnosis.frame_doubts, s.observations, s.state);
   } catch (const Error&) {
     return false;
   }
@@ -188,8 +181,8 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
                 "give one model, or one per camera");
   }
   Solution s;
-  if (options.check_input) s.diagnosis = check_observations(observations);
-  s.state = initial_state(observations, models);
+  if (options.check_input) s.diagnosis = check_observations(observations, options.reject_outliers);
+  s.state = start_without(s.diagnosis.frame_doubts, observations, models);
   leave_out_beyond_field(observations, s.state, options.held, problem_of(options, s.state.rig),
                          s.diagnosis.warnings);
   if (options.check_input) {
@@ -339,15 +332,17 @@ void add_trust_warnings(const Solution& s,
     if (warning) trust_warnings.push_back(*warning);
   };
   add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
-  if (options.pixel_sigma_px > 0 && estimate.calibration->rms_px <= largest_corner_noise_px) {
-    add(noise_warning(s.cost.equations.chi2, degrees_of_freedom(s), options.pixel_sigma_px));
+  if (estimate.calibration->rms_px <= largest_corner_noise_px) {
+    if (options.pixel_sigma_px > 0) {
+      add(noise_warning(s.cost.equations.chi2, degrees_of_freedom(s), options.pixel_sigma_px));
+    }
+    add(curvature_warning(estimate.rig, *estimate.covariance));
   }
   const int clusters = options.white_noise ? 0 : estimate.calibration->views;
   for (const RigPrior& prior : s.problem.priors) {
     add(prior_conflict_warning(prior, estimate.rig, *estimate.covariance_mvb,
                                estimate.covariance->matrix, clusters));
   }
-  add(curvature_warning(estimate.rig, *estimate.covariance));
 }
 
 }  // namespace

@@ -28,10 +28,10 @@ constexpr double same_image_px = 1e-3;    // of one camera: a copy
 constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps compressed again
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
+constexpr double most_misfits = 0.2;  // of a camera's views: more are the rule, not the exception
 // A lens bends three by three corners by at most 0.12 of their spacing up to 85 degrees from its
 // axis; one row in nine reversed, or numbered from the next corner on, leaves a sixth of the
 // corners and more above twice that.
-constexpr double most_misfits = 0.2;  ///< of all views: more are the rule, not the exception
 constexpr double local_misfit_spacings = 0.25, local_misfit_share = 0.15;
 
 /// Distance between neighbouring corners in the image: that on the target, times the square root of
@@ -85,10 +85,14 @@ double share_unlike_neighbours(const std::vector<Eigen::Vector3d>& target_m,
 /// Doubts views whose corners are not on a plane. Throws Error if they are not few. Flags them.
 std::vector<bool> check_grids(const BoardObservations& observations,
                               const std::vector<BoardHomography>& homographies,
+                              bool may_leave_out,
                               ObservationDiagnosis& diagnosis) {
   std::vector<Error> errors;
+  std::map<int, std::pair<int, int>> of_camera;  // misfits, all
   std::vector<bool> misfit(homographies.size());
   for (std::size_t i = 0; i < homographies.size(); ++i) {
+    auto& [misfits, all] = of_camera[observations.views[i].camera];
+    ++all;
     const double spacing = corner_spacing_px(homographies[i], observations.target_m);
     if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing) ||
         share_unlike_neighbours(observations.target_m, observations.views[i]) <=
@@ -96,6 +100,7 @@ std::vector<bool> check_grids(const BoardObservations& observations,
       continue;
     }
     misfit[i] = true;
+    ++misfits;
     errors.emplace_back(
         view_label(observations.views[i]),
         fmt::format("its corners do not fit a flat board (residual {:.0f} px at a corner spacing "
@@ -104,8 +109,8 @@ std::vector<bool> check_grids(const BoardObservations& observations,
         "check that rows and columns of the board are not exchanged and how corners are numbered");
     diagnosis.frame_doubts.push_back({observations.views[i].frame, errors.back().what()});
   }
-  if (static_cast<double>(errors.size()) > most_misfits * static_cast<double>(misfit.size())) {
-    throw errors.front();
+  for (const auto& [camera, count] : of_camera) {
+    if (count.first > (may_leave_out ? most_misfits * count.second : 0)) throw errors.front();
   }
   return misfit;
 }
@@ -288,7 +293,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-ObservationDiagnosis check_observations(const BoardObservations& observations) {
+ObservationDiagnosis check_observations(const BoardObservations& observations, bool may_leave_out) {
   ObservationDiagnosis diagnosis;
   if (observations.views.empty()) {
     throw Error("observations", "there is no view of the board", "give at least one");
@@ -298,7 +303,8 @@ ObservationDiagnosis check_observations(const BoardObservations& observations) {
   for (const BoardView& view : observations.views) {
     homographies.push_back(board_homography(observations.target_m, view));
   }
-  const std::vector<bool> misfit = check_grids(observations, homographies, diagnosis);
+  const std::vector<bool> misfit =
+      check_grids(observations, homographies, may_leave_out, diagnosis);
   check_mirrored(observations, homographies, misfit, diagnosis);
   check_repeats(observations, diagnosis);
   check_sizes(observations, diagnosis);

@@ -29,9 +29,9 @@ struct ObservationDiagnosis {
 /// check_and_sort first. Throws Error, naming frame, camera and image, for
 ///
 ///  - corners that are not on a plane (rows and columns exchanged, wrong numbering) in more than a
-///    fifth of the views; in fewer the frame is doubted. Residual of the homography above half the
-///    spacing of corners, and more than 15 % of the corners off a homography with their eight
-///    neighbours by a quarter of the spacing, since a wide lens bends the board as a whole;
+///    fifth of a camera's views; in fewer the frame is doubted. Residual of the homography above
+///    half the spacing of corners, and more than 15 % of the corners off a homography with their
+///    eight neighbours by a quarter of the spacing, since a wide lens bends the board as a whole;
 ///  - some views mirrored relative to the others: determinant of the homography of opposite sign;
 ///  - a repeated view: corners of two frames of a camera within 0.001 px;
 ///  - identical left and right images: corners of two cameras in a frame within 0.05 px.
@@ -39,7 +39,10 @@ struct ObservationDiagnosis {
 /// Trust warnings: every view of a chessboard mirrored; almost no corner beyond half the image
 /// (wrong size). Warnings: frames seen by some cameras only, repeated views (rms below 0.3 px), a
 /// board of unlikely size.
-ObservationDiagnosis check_observations(const BoardObservations& observations);
+///
+/// `may_leave_out`: false if wrong corners are kept; then no view may be off a plane.
+ObservationDiagnosis check_observations(const BoardObservations& observations,
+                                        bool may_leave_out = true);
 
 /// "frame 3, camera 1 (right03.png)".
 std::string view_label(const BoardView& view);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/covariance.h"
@@ -52,12 +53,16 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   }
   const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
   const Eigen::MatrixXd C = V * full_covariance(prior).matrix * V.transpose();
-  const bool is_whole =
-      free.size() == held.size() && prior.covariance.kind != CovarianceKind::prior;
-  const Eigen::VectorXd moved =
-      values_by_tangent(rig, held) *
-      (is_whole ? StableCoordinates(prior.rig, full_covariance(prior).matrix).coordinates(rig)
-                : difference(rig, prior.rig));
+  Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
+  Eigen::MatrixXd bound = covariance_of_free(*estimate.covariance_mvb, rig, held),
+                  honest = covariance_of_free(estimate.covariance->matrix, rig, held);
+  if (free.size() == held.size() && prior.covariance.kind != CovarianceKind::prior) {
+    if (auto at = StableCoordinates(prior.rig, C).try_position(rig)) {
+      moved = std::move(at->delta);
+      bound = at->by_rig * bound * at->by_rig.transpose();
+      honest = at->by_rig * honest * at->by_rig.transpose();
+    }
+  }
   Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
   if (!given.empty()) {  // condition the prior on the values of its held parameters
@@ -67,9 +72,7 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
     covariance -= by_given * by_given.transpose();
   }
   return prior_consistency(offset, free_names(rig, held),
-                           {.prior = covariance,
-                            .bound = covariance_of_free(*estimate.covariance_mvb, rig, held),
-                            .honest = covariance_of_free(estimate.covariance->matrix, rig, held)},
+                           {.prior = covariance, .bound = bound, .honest = honest},
                            {.clusters = clusters_of(estimate), .looseness = looseness});
 }
 

@@ -154,13 +154,16 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   std::vector<std::string> names;
   names.reserve(known.size());
   for (const Eigen::Index i : known) names.push_back(parameter_names(rig)[i]);
-  const Eigen::VectorXd offset = prior_offset(prior, rig).delta(known);
+  const PriorOffset at = prior_offset(prior, rig);
+  const Eigen::VectorXd offset = at.delta(known);
+  const auto in_prior = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    return (at.by_rig * C * at.by_rig.transpose())(known, known);
+  };
   const Eigen::MatrixXd before = prior.information(known, known).inverse();
   PriorConsistency agreement;
   try {
     agreement = prior_consistency(
-        offset, names,
-        {.prior = before, .bound = bound(known, known), .honest = honest(known, known)},
+        offset, names, {.prior = before, .bound = in_prior(bound), .honest = in_prior(honest)},
         {.clusters = clusters});
   } catch (const Error&) {  // a prior that cannot be inverted in double precision is not checked
     return {};

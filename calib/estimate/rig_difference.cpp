@@ -152,7 +152,7 @@ void check_covariance(const Rig& rig, const Covariance& covariance, const char* 
 }
 
 /// b's coordinates about a and their covariance, in which errors are closer to normal than in the
-/// tangent. std::nullopt where b has none: other models, or rotations held in part.
+/// tangent. std::nullopt where b has none: other models, or poses held in part.
 struct StableDifference {
   Eigen::VectorXd delta;
   Eigen::MatrixXd covariance;
@@ -235,7 +235,9 @@ RigDifference rig_difference(const Rig& a,
     result.parameters.push_back(std::move(p));
   }
   if (!known.empty()) {
-    const auto stable = stable_difference(a, covariance_a, b, covariance_b, held);
+    const auto stable = result.fixed_at_different_values.empty()
+                            ? stable_difference(a, covariance_a, b, covariance_b, held)
+                            : std::nullopt;
     measure((stable ? stable->delta : delta)(known),
             (stable ? stable->covariance : sum)(known, known), known_names, result);
   }

@@ -134,8 +134,11 @@ Eigen::Matrix3Xd StableCamera::linear_turn_by_intrinsics() const {
 }
 
 std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) const {
-  if (free_.empty()) return TurnedCamera{mean_, Eigen::Matrix3d::Identity()};
-  if (inverse_.size() == 0) return std::nullopt;
+  if (inverse_.size() == 0) {
+    TurnedCamera plain{mean_, Eigen::Matrix3d::Identity()};
+    plain.camera.parameters += stable;
+    return plain;
+  }
   Eigen::VectorXd linear(sigma_.size() + 3);
   linear << free(stable), turns_ * free(stable);
   const Eigen::VectorXd goal = slope_ * linear;
@@ -168,12 +171,11 @@ std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) 
 }
 
 std::optional<StableCamera::Coordinates> StableCamera::coordinates(const Camera& camera) const {
-  if (free_.empty()) {
+  if (inverse_.size() == 0) {
     const auto all = camera.parameters.size();
     return Coordinates{camera.parameters - mean_.parameters, Eigen::Matrix3d::Identity(),
                        Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
   }
-  if (inverse_.size() == 0) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(free_.size());
   // The turn V with C A⁺ r(i, V) = 0, C = (−turns, I), by Newton's method.
   Eigen::MatrixXd C(3, n + 3);
@@ -201,6 +203,7 @@ std::optional<StableCamera::Coordinates> StableCamera::coordinates(const Camera&
       result.by_intrinsics(free_, free_) = sigma_.asDiagonal() * moved_y * per_sigma.asDiagonal();
       result.turn_by_intrinsics(Eigen::all, free_) =
           turn_unit_rad_ * turned * per_sigma.asDiagonal();
+      if (!result.by_intrinsics.allFinite() || !result.turn_by_intrinsics.allFinite()) break;
       return result;
     }
     const Eigen::Matrix3d slope = D * found->J.rightCols<3>();

@@ -26,7 +26,8 @@ struct TurnedCamera {
 /// A the derivative of r by (i, v) at the mean. y has i's units and is i − i₀ to first order, but a
 /// principal point that moves with the camera's direction moves y by what is seen of it. The second
 /// part of r, of no weight beside a visible change, keeps what no pixel shows. V is such that to
-/// first order no turn is left in the image.
+/// first order no turn is left in the image. A camera with few rays in its image, as of a lens that
+/// folds there, has i − i₀ and no turn.
 class StableCamera {
  public:
   /// `covariance`: of the intrinsics; those without a variance stay as they are.
@@ -37,10 +38,12 @@ class StableCamera {
   Eigen::Vector3d linear_turn(const Eigen::VectorXd& intrinsics) const;
   Eigen::Matrix3Xd linear_turn_by_intrinsics() const;
 
-  /// The camera with these parameters and its turn. std::nullopt if none is found.
+  /// The camera with these parameters and its turn: the minimum of |r − A y|, or what is nearest to
+  /// it after 50 steps. std::nullopt where that begins without an image.
   std::optional<TurnedCamera> camera(const Eigen::VectorXd& stable) const;
 
-  /// The parameters of a camera of the same model, its turn, and their derivatives by the
+  /// The parameters of a camera of the same model and with the same values of those without a
+  /// variance, its turn, and their derivatives by the
   /// intrinsics (the turn's on the left).
   struct Coordinates {
     Eigen::VectorXd stable;

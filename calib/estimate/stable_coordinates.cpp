@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "calib/estimate/stable_camera.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier::internal {
 namespace {
@@ -19,22 +21,38 @@ Eigen::VectorXd intrinsics_of(const Rig& rig, const Eigen::VectorXd& tangent, st
                          rig.cameras[camera].parameters.size());
 }
 
+/// Of the parameters with a variance.
+bool has_null_direction(const Eigen::MatrixXd& covariance) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    if (covariance(i, i) > 0) free.push_back(i);
+  }
+  if (free.empty()) return true;
+  constexpr double rounding = 1e-14;
+  const Eigen::VectorXd s = ScaledEigen(covariance(free, free)).values;
+  return !(s.minCoeff() > rounding * s.maxCoeff());
+}
+
+MovedRig in_tangent(const Rig& mean, const Eigen::VectorXd& delta) {
+  return {retract(mean, delta), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
+}
+
 }  // namespace
 
 StableCoordinates::StableCoordinates(const Rig& mean, const Eigen::MatrixXd& covariance)
     : mean_(mean) {
   for (std::size_t c = 0; c < mean.cameras.size(); ++c) {
-    const auto i = intrinsics_index(mean, static_cast<int>(c));
+    const int i = intrinsics_index(mean, static_cast<int>(c));
     const auto n = mean.cameras[c].parameters.size();
     cameras_.emplace_back(mean.cameras[c], covariance.block(i, i, n, n));
-    pose_known_.push_back(
-        c > 0 &&
-        (covariance.diagonal().segment<6>(pose_index(mean, static_cast<int>(c))).array() <= 0)
-            .all());
   }
+  const auto poses = pose_index(mean, 1);
+  is_tangent_ = (covariance.diagonal().tail(covariance.rows() - poses).array() <= 0).any() ||
+                has_null_direction(covariance);
 }
 
 std::optional<MovedRig> StableCoordinates::try_rig(const Eigen::VectorXd& delta) const {
+  if (is_tangent_) return in_tangent(mean_, delta);
   MovedRig moved{mean_, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
   for (std::size_t c = 0; c < mean_.cameras.size(); ++c) {
     const Eigen::VectorXd intrinsics = intrinsics_of(mean_, delta, c);
@@ -47,7 +65,6 @@ std::optional<MovedRig> StableCoordinates::try_rig(const Eigen::VectorXd& delta)
       moved.linear_turn = v;
       continue;
     }
-    if (pose_known_[c]) continue;
     const Pose& mean = mean_.T_camera_first[c];
     const auto tangent = delta.segment<6>(pose_index(mean_, static_cast<int>(c)));
     const Eigen::Vector3d rho = tangent.head<3>() - v + mean.R * moved.linear_turn;
@@ -60,12 +77,19 @@ std::optional<MovedRig> StableCoordinates::try_rig(const Eigen::VectorXd& delta)
 
 MovedRig StableCoordinates::rig(const Eigen::VectorXd& delta) const {
   if (auto moved = try_rig(delta)) return *std::move(moved);
-  return {retract(mean_, delta), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
+  return in_tangent(mean_, delta);
 }
 
 std::optional<StablePosition> StableCoordinates::try_position(const Rig& rig) const {
   StablePosition at{difference(rig, mean_), {}};
   at.by_rig = Eigen::MatrixXd::Identity(at.delta.size(), at.delta.size());
+  if (is_tangent_) {
+    for (std::size_t c = 1; c < mean_.cameras.size(); ++c) {
+      const int p = pose_index(mean_, static_cast<int>(c));
+      at.by_rig.block<3, 3>(p, p) = left_jacobian(at.delta.segment<3>(p)).inverse();
+    }
+    return at;
+  }
   std::optional<StableCamera::Coordinates> first;
   Eigen::Vector3d first_linear;
   Eigen::Matrix3Xd first_linear_by;
@@ -86,7 +110,6 @@ std::optional<StablePosition> StableCoordinates::try_position(const Rig& rig) co
     }
     const int p = pose_index(mean_, static_cast<int>(c));
     const Pose &mean = mean_.T_camera_first[c], &T = rig.T_camera_first[c];
-    if (pose_known_[c]) continue;
     const Eigen::Matrix3d back = found->turn.transpose();
     const Eigen::Vector3d rho = vector_from_rotation(back * T.R * first->turn * mean.R.transpose());
     at.delta.segment<3>(p) = rho + v - mean.R * first_linear;

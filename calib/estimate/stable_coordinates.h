@@ -34,7 +34,8 @@ struct StablePosition {
 ///     t_c = V_c (t̄_c + τ_c − v_c × t̄_c)
 ///
 /// for (w_c, τ_c) the pose's part of the tangent, V_c the turn of camera c and v_c its linear part.
-/// Poses without variance stay as they are.
+/// If a parameter of a pose, or a direction, has no variance they are the tangent: a camera that
+/// may not turn cannot follow its principal point.
 class StableCoordinates {
  public:
   /// `covariance`: of the rig's parameters. Those without a variance do not move.
@@ -54,7 +55,7 @@ class StableCoordinates {
  private:
   Rig mean_;
   std::vector<StableCamera> cameras_;
-  std::vector<bool> pose_known_;  ///< one per camera, the first unused: has no variance
+  bool is_tangent_ = false;
 };
 
 }  // namespace vernier::internal

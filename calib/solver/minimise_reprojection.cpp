@@ -98,6 +98,8 @@ ceres::Solver::Options solver_options(int max_iterations) {
   return options;
 }
 
+constexpr double largest_valley_px = 20;  ///< larger residuals are of wrong corners
+
 /// Indices of a camera's parameters among the rig's.
 std::vector<int> parameters_of(const Rig& rig, int camera) {
   std::vector<int> own(static_cast<std::size_t>(rig.cameras[camera].parameters.size()));
@@ -174,7 +176,16 @@ class Minimisation {
     ceres::Solver::Options options = solver_options(what_.max_iterations);
     options.linear_solver_ordering = ordering_;
     ceres::Solver::Summary summary;
+    const std::vector<Block> begin = blocks();
     ceres::Solve(options, &problem_, &summary);
+    if (what_.must_converge && summary.termination_type == ceres::NO_CONVERGENCE &&
+        rms_px(summary) < largest_valley_px) {
+      // Steps that may go up leave the curved valley of a lens that the views hardly determine.
+      options.use_nonmonotonic_steps = true;
+      options.max_num_iterations = 10 * what_.max_iterations;
+      for (const Block& block : begin) std::copy(block.value.begin(), block.value.end(), block.at);
+      ceres::Solve(options, &problem_, &summary);
+    }
     const bool at_rest = !what_.must_converge ||
                          summary.termination_type != ceres::NO_CONVERGENCE ||
                          moves_no_more(summary);
@@ -192,6 +203,23 @@ class Minimisation {
   }
 
  private:
+  struct Block {
+    double* at;
+    std::vector<double> value;
+  };
+  std::vector<Block> blocks() const {
+    std::vector<double*> all;
+    problem_.GetParameterBlocks(&all);
+    std::vector<Block> result;
+    for (double* at : all) result.push_back({at, {at, at + problem_.ParameterBlockSize(at)}});
+    return result;
+  }
+
+  /// Of a coordinate, as if the priors had no part in the cost.
+  double rms_px(const ceres::Solver::Summary& summary) const {
+    return std::sqrt(2 * summary.final_cost / static_cast<double>(coordinates_));
+  }
+
   static std::unique_ptr<CompressedPairs> pairs_of(const BoardState& start,
                                                    const ReprojectionProblem& what,
                                                    const ParameterBuffer& buffer) {
@@ -210,6 +238,7 @@ class Minimisation {
     for (std::size_t v = 0; v < observations.views.size(); ++v) {
       const BoardView& view = observations.views[v];
       const std::size_t frame = frame_index(start_.frames, view.frame);
+      coordinates_ += 2 * view.ids.size();
       std::vector<double*> blocks{buffer_.intrinsics(view.camera), buffer_.board(frame)};
       if (view.camera > 0) blocks.push_back(buffer_.camera_pose(view.camera));
       if (what_.warp == BoardWarp::free) blocks.push_back(buffer_.warp());
@@ -221,6 +250,7 @@ class Minimisation {
 
   void add_pairs() {
     if (!pairs_) return;
+    coordinates_ += 4 * what_.pairs.size();
     const std::vector<double*> blocks{buffer_.intrinsics(0), buffer_.intrinsics(1),
                                       buffer_.camera_pose(1)};
     problem_.AddResidualBlock(pairs_->cost().release(), nullptr, blocks);
@@ -270,6 +300,7 @@ class Minimisation {
   std::unique_ptr<CompressedPairs> pairs_;
   AllResiduals all_;
   ceres::Problem problem_;
+  std::size_t coordinates_ = 0;  ///< of all corners and pairs
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();
 };

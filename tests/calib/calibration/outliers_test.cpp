@@ -162,8 +162,6 @@ TEST(Outliers, AWholeViewMayBeOne) {
   }
 }
 
-// Plain least squares with views numbered the wrong way round, or swapped, ends so far away that
-// least squares without them, begun there, finds another valley.
 // Corners of one image that are on no plane: they do not stop the calibration from the others.
 TEST(Outliers, AnImageThatFitsNoBoardIsLeftOutAndNamed) {
   const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 23, .frames = 20});
@@ -196,6 +194,8 @@ TEST(Outliers, AnImageThatFitsNoBoardIsLeftOutAndNamed) {
   }
 }
 
+// Plain least squares with views numbered the wrong way round, or swapped, ends so far away that
+// least squares without them, begun there, finds another valley.
 TEST(Outliers, LeastSquaresBeginsAgainAtTheRobustMinimum) {
   const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 25, .frames = 12});
   BoardObservations turned = board.observations, swapped = board.observations;

@@ -13,6 +13,7 @@
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/estimate/same_rig.h"
+#include "calib/estimate/stable_coordinates.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -58,8 +59,14 @@ TEST(RigDifference, IsTheQuadraticFormAndTheSumOfItsDirections) {
   const RigDifference d = of(a, b);
   const Eigen::VectorXd delta = difference(b.rig, a.rig);
   const Eigen::MatrixXd C = a.covariance->matrix + b.covariance->matrix;
+  const auto at = StableCoordinates(a.rig, C).try_position(b.rig);
+  const Eigen::MatrixXd moved =
+      a.covariance->matrix + at->by_rig * b.covariance->matrix * at->by_rig.transpose();
+  EXPECT_NEAR(d.mahalanobis2, at->delta.dot(Eigen::LLT<Eigen::MatrixXd>(moved).solve(at->delta)),
+              1e-6 * d.mahalanobis2);
+  // The lens is wide: the tangent serves as well.
   EXPECT_NEAR(d.mahalanobis2, delta.dot(Eigen::LLT<Eigen::MatrixXd>(C).solve(delta)),
-              0.03 * d.mahalanobis2);  // the lens is wide: the tangent serves as well
+              0.03 * d.mahalanobis2);
   EXPECT_EQ(d.p_value, chi_squared_survival(d.mahalanobis2, 16));
   double sum = 0;
   for (std::size_t k = 0; k < d.directions.size(); ++k) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "calib/base/decompositions.h"
@@ -30,6 +31,7 @@ namespace {
 
 constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
 constexpr int huber_rounds = 12, tukey_rounds = 40;
+constexpr double gross = 6;         // standard deviations, by the median residual of the moment
 constexpr double min_scale = 0.01;  // of the stated noise: lower bound of the scale
 
 double median_length(std::vector<double> values) {
@@ -67,12 +69,17 @@ void minimise(JointMinimum& joint) {
   joint.residuals = joint.packed.residuals(joint.state.rig);
 }
 
-/// One round of iterated weights; returns the largest change of a weight.
-double reweigh(JointMinimum& joint, const Loss& loss) {
+/// One round of iterated weights, 0 for residuals from `beyond` on; returns the largest change of a
+/// weight.
+double reweigh(JointMinimum& joint,
+               const Loss& loss,
+               double beyond = std::numeric_limits<double>::infinity()) {
   std::vector<double> weights;
   double change = joint.cost.pair_weights.empty() ? 1 : 0;
   for (std::size_t i = 0; i < joint.residuals.size(); ++i) {
-    weights.push_back(weight_of(loss, joint.residuals[i] / joint.cost.pair_sigma_scale));
+    const bool is_near = std::abs(joint.residuals[i]) < beyond;
+    weights.push_back(is_near ? weight_of(loss, joint.residuals[i] / joint.cost.pair_sigma_scale)
+                              : 0);
     if (!joint.cost.pair_weights.empty()) {
       change = std::max(change, std::abs(weights[i] - joint.cost.pair_weights[i]));
     }
@@ -133,7 +140,11 @@ void minimise_robust(JointMinimum& joint, double fixed_scale) {
   double scale = std::max(stated, median_scale());
   for (int round = 0; round < huber_rounds; ++round, scale = std::max(stated, 0.5 * scale)) {
     joint.cost.pair_sigma_scale = scale;
-    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2 && scale == stated) break;
+    // Matches that are wrong by a part of the image would still bend the lens over.
+    const double beyond = gross * std::max(stated, median_scale());
+    if (reweigh(joint, balanced(LossShape::huber, huber_limit), beyond) < 1e-2 && scale == stated) {
+      break;
+    }
     minimise(joint);
   }
   joint.loss = balanced(LossShape::tukey, tukey_limit);

@@ -17,14 +17,16 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double range_m = 3;  // at which disparity and depth uncertainty are reported
+/// At which disparity and depth uncertainty are reported: the first where both cameras see
+/// anything.
+constexpr double ranges_m[] = {3, 30};
 
 /// Effect of the rig's covariance on disparity and depth.
 struct Downstream {
   double vertical_disparity_px = 0;  ///< NaN if nothing is in view of both cameras
   double depth_m = 0;
 };
-Downstream downstream(const Rig& rig, const Eigen::MatrixXd& covariance) {
+Downstream downstream(const Rig& rig, const Eigen::MatrixXd& covariance, double range_m) {
   RigEstimate estimate;
   estimate.rig = rig;
   estimate.covariance = Covariance{CovarianceKind::prior, parameter_names(rig), covariance};
@@ -40,8 +42,14 @@ ObservabilityReport report_observability(const JointCalibration& joint,
   if (!joint.observability) return report;
   const Observability& o = *joint.observability;
   const Rig& rig = joint.estimate.rig;
-  const Downstream before = downstream(rig, covariance_before);
-  const Downstream after = downstream(rig, joint.estimate.covariance->matrix);
+  Downstream after;
+  double range_m = 0;
+  for (const double range : ranges_m) {
+    range_m = range;
+    after = downstream(rig, joint.estimate.covariance->matrix, range_m);
+    if (!std::isnan(after.vertical_disparity_px)) break;
+  }
+  const Downstream before = downstream(rig, covariance_before, range_m);
   std::string& text = report.text;
   text += "information from the pairs (ratio of standard deviations after / before; 1: none):\n";
   for (const ObservedDirection& d : o.directions) {

@@ -17,6 +17,14 @@ namespace vernier::cli {
 void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session& session) {
   const bool has_views = rig.evidence && !rig.evidence->observations.views.empty();
   if (has_views || !rig.calibration || rig.calibration->views == 0) return;
+  if (rig.evidence && rig.evidence->pairs.size() > 0) {
+    session.warn(
+        fmt::format("{}: it was calibrated from matched corners: they do not count, and board, "
+                    "distance and noise are those of a datasheet; say how the board is seen with "
+                    "--board, --square-m, --board-distance-m and --pixel-sigma",
+                    name));
+    return;
+  }
   session.warn(fmt::format(
       "{}: its {} views are not in this file, as after convert: they do not count, and board, "
       "distance and noise are those of a datasheet; to count them plan from the file that has "

@@ -183,8 +183,8 @@ class Hostile(cli_test.Case):
             done = vernier(*words, '-o', 'out.json')
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertNotIn('nan', done.stdout)
-            self.assertNotIn('at 3 m', done.stdout)
-            self.assertIn('at 3 m nothing is in view of both cameras, whose baseline is 100 m: are the '
+            self.assertNotIn(' m: vertical disparity', done.stdout)
+            self.assertIn('at 30 m nothing is in view of both cameras, whose baseline is 100 m: are the '
                           'lengths of the prior in metres?', done.stderr)
             found = json.loads(vernier(*words, '-o', 'out.json', '--json', '-q').stdout)
             self.assertEqual(found['observability']['vertical_disparity_px'], [None, None])

@@ -376,10 +376,12 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
     add_scale_of_aspect(estimate.rig, summary.board_aspect->value, estimate.covariance->matrix);
   }
   estimate.calibration = std::move(summary);
+  const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
-  for (auto& line : warnings_of(*estimate.calibration, honest.matrix, s)) warnings.push_back(line);
+  warnings.insert(warnings.end(), more.begin(), more.end());
   if (options.check_input) {
-    for (const auto& line : inversion_warnings(estimate.rig)) warnings.push_back(line);
+    const auto folds = inversion_warnings(estimate.rig);
+    warnings.insert(warnings.end(), folds.begin(), folds.end());
     add_trust_warnings(s, options, estimate);
   }
   estimate.evidence = CalibrationEvidence{

@@ -22,21 +22,20 @@ constexpr int draws = 64;
 
 double covariance_curvature(const Rig& rig, const Covariance& covariance) {
   const StableCoordinates about(rig, covariance.matrix);
-  const ScaledDecomposition decomposition(covariance);
-  const Eigen::MatrixXd& factor = decomposition.factor();
   const ScaledRoot root(covariance.matrix);
-  if (root.white.rows() == 0) return 0;
+  const auto q = static_cast<int>(root.white.rows());
+  if (q == 0) return 0;
   double sum = 0;
   for (int i = 0; i < draws; ++i) {
     RandomStream random({.trial = static_cast<std::uint32_t>(i),
                          .source = static_cast<std::uint32_t>(DrawSource::curvature)});
-    const Eigen::VectorXd delta = factor * random.normals(static_cast<int>(factor.cols()));
+    const Eigen::VectorXd delta = root.root * random.normals(q);
     const auto moved = about.try_rig(delta);
     const auto found = moved ? about.try_coordinates(moved->rig) : std::nullopt;
     if (!found) return std::numeric_limits<double>::infinity();
     sum += (root.white * (*found - delta)).squaredNorm();
   }
-  return sum / (draws * static_cast<double>(root.white.rows()));
+  return sum / (static_cast<double>(draws) * q);
 }
 
 std::optional<std::string> curvature_warning(const Rig& rig, const Covariance& covariance) {

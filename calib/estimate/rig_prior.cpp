@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,10 +89,8 @@ RigPrior prior_at(const Rig& like,
       values_by_tangent(prior.mean, all_but(places, like))(places, Eigen::all);
   prior.information = K.transpose() * (0.5 * (P + P.transpose())) * K;
   if (covariance.kind != CovarianceKind::prior && K.rows() == K.cols()) {
-    const Eigen::MatrixXd E =
-        tangent_by_values(prior.mean, all_but(places, like))(Eigen::all, places);
     prior.coordinates = std::make_shared<const StableCoordinates>(
-        prior.mean, E * covariance.matrix * E.transpose());
+        prior.mean, full_covariance({prior.mean, covariance}).matrix);
   }
   return prior;
 }
@@ -150,19 +149,10 @@ RigPrior with_mean(const RigPrior& prior, Rig mean) {
 }
 
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {
-  if (prior.coordinates) {
-    if (auto at = prior.coordinates->try_position(rig)) {
-      return {std::move(at->delta), std::move(at->by_rig)};
-    }
-  }
-  PriorOffset offset;
-  offset.delta = difference(rig, prior.mean);
-  offset.by_rig = Eigen::MatrixXd::Identity(offset.delta.size(), offset.delta.size());
-  for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
-    const int i = pose_index(rig, static_cast<int>(c));
-    offset.by_rig.block<3, 3>(i, i) = left_jacobian(offset.delta.segment<3>(i)).inverse();
-  }
-  return offset;
+  std::optional<StablePosition> at;
+  if (prior.coordinates) at = prior.coordinates->try_position(rig);
+  if (!at) at = tangent_position(rig, prior.mean);
+  return {std::move(at->delta), std::move(at->by_rig)};
 }
 
 double prior_chi2(const RigPrior& prior, const Rig& rig) {

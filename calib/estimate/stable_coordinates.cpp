@@ -39,6 +39,16 @@ MovedRig in_tangent(const Rig& mean, const Eigen::VectorXd& delta) {
 
 }  // namespace
 
+StablePosition tangent_position(const Rig& rig, const Rig& mean) {
+  StablePosition at{difference(rig, mean), {}};
+  at.by_rig = Eigen::MatrixXd::Identity(at.delta.size(), at.delta.size());
+  for (std::size_t c = 1; c < mean.cameras.size(); ++c) {
+    const int p = pose_index(mean, static_cast<int>(c));
+    at.by_rig.block<3, 3>(p, p) = left_jacobian(at.delta.segment<3>(p)).inverse();
+  }
+  return at;
+}
+
 StableCoordinates::StableCoordinates(const Rig& mean, const Eigen::MatrixXd& covariance)
     : mean_(mean) {
   for (std::size_t c = 0; c < mean.cameras.size(); ++c) {
@@ -81,15 +91,8 @@ MovedRig StableCoordinates::rig(const Eigen::VectorXd& delta) const {
 }
 
 std::optional<StablePosition> StableCoordinates::try_position(const Rig& rig) const {
-  StablePosition at{difference(rig, mean_), {}};
-  at.by_rig = Eigen::MatrixXd::Identity(at.delta.size(), at.delta.size());
-  if (is_tangent_) {
-    for (std::size_t c = 1; c < mean_.cameras.size(); ++c) {
-      const int p = pose_index(mean_, static_cast<int>(c));
-      at.by_rig.block<3, 3>(p, p) = left_jacobian(at.delta.segment<3>(p)).inverse();
-    }
-    return at;
-  }
+  StablePosition at = tangent_position(rig, mean_);
+  if (is_tangent_) return at;
   std::optional<StableCamera::Coordinates> first;
   Eigen::Vector3d first_linear;
   Eigen::Matrix3Xd first_linear_by;

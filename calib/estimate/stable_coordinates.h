@@ -24,6 +24,9 @@ struct StablePosition {
   Eigen::MatrixXd by_rig;
 };
 
+/// difference(rig, mean) and its derivative.
+StablePosition tangent_position(const Rig& rig, const Rig& mean);
+
 /// Coordinates of a rig about a mean that agree with the tangent of calib/rig.h to first order, in
 /// which calibration errors are closer to normal. The tangent of a narrow lens is curved: centre
 /// and direction of each camera are badly known, their sum in the image well, and the sum is a

@@ -47,7 +47,10 @@ class Copies {
       for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] += residuals[v][i];
       corners_ += static_cast<Eigen::Index>(predicted.size());
     }
-    for (const RigPrior& prior : problem.priors) priors_.emplace_back(prior.information);
+    for (const RigPrior& prior : problem.priors) {
+      priors_.emplace_back(prior.information);
+      centred_.push_back(with_mean(prior, state.rig));
+    }
     if (problem.priors.empty()) resolver_.emplace(observations, state, problem);
   }
 
@@ -59,7 +62,7 @@ class Copies {
       RandomStream draws(of_prior(place(trial, 0), static_cast<std::uint32_t>(k)));
       const Eigen::MatrixXd& white = priors_[k].white;
       const Eigen::VectorXd off = white.transpose() * draws.normals(static_cast<int>(white.rows()));
-      const RigPrior about = with_mean(problem.priors[k], state_.rig);
+      const RigPrior& about = centred_[k];
       problem.priors[k] = with_mean(
           about, about.coordinates ? about.coordinates->rig(off).rig : retract(state_.rig, off));
     }
@@ -97,6 +100,7 @@ class Copies {
   std::vector<std::vector<Eigen::Vector2d>> predicted_;
   Eigen::Index corners_ = 0;
   std::vector<ScaledRoot> priors_;
+  std::vector<RigPrior> centred_;  ///< about the state's rig
   std::optional<Resolver> resolver_;
 };
 

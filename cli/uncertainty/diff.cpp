@@ -57,18 +57,15 @@ RigEstimate load(const std::string& name, Comparison& found) {
 /// Adds warnings that limit the validity of the comparison.
 void add_warnings(const DiffArguments& options, Comparison& found) {
   const auto warn = [&](std::string line) { found.warnings.push_back(std::move(line)); };
-  for (const auto& [covariance, name] :
-       {std::pair(&found.covariance_a, &options.a), std::pair(&found.covariance_b, &options.b)}) {
-    if (covariance->has_value()) continue;
-    warn(fmt::format("{} has no {} covariance: only projections are compared", *name,
-                     options.covariance == "mvb" ? "minimum variance" : "honest"));
-  }
   for (const auto& [estimate, covariance, name] :
        {std::tuple(&found.a, &found.covariance_a, &options.a),
         std::tuple(&found.b, &found.covariance_b, &options.b)}) {
-    if (!*covariance) continue;
-    const auto doubt = curvature_warning(estimate->rig, **covariance);
-    if (doubt) warn(*name + ": " + *doubt);
+    if (!covariance->has_value()) {
+      warn(fmt::format("{} has no {} covariance: only projections are compared", *name,
+                       options.covariance == "mvb" ? "minimum variance" : "honest"));
+    } else if (const auto doubt = curvature_warning(estimate->rig, **covariance)) {
+      warn(*name + ": " + *doubt);
+    }
   }
   if (found.projection.left_out > 0) {
     warn(

@@ -1,3 +1,15 @@
+# vernier_module_headers(NAME): what nearly every source includes, compiled once for all targets with
+# the same options, which name it by REUSE_FROM. It links to nothing: the compiler refuses a
+# precompiled header with a definition that a source does not have.
+function(vernier_module_headers name)
+  file(CONFIGURE OUTPUT ${name}.cpp CONTENT "")
+  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen)
+  target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>
+                                            ${PROJECT_SOURCE_DIR}/calib/base/eigen_kernels.h)
+endfunction()
+
 # vernier_module(NAME PUBLIC … ROOMS … SOURCES … DEPENDS … PRIVATE … HEADER_ONLY …)
 # One static (or shared) library vernier::NAME. PUBLIC headers are installed and included as
 # "NAME/header.h", in the tree and after installation alike. ROOMS are sub-folders that add their
@@ -5,7 +17,8 @@
 # libraries never appear in public headers. Of HEADER_ONLY libraries the sources see the headers and
 # nothing is linked, so that the installed package does not name them.
 function(vernier_module name)
-  set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized)
+  set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized
+                       -Wno-use-after-free)
   cmake_parse_arguments(ARG "" "" "PUBLIC;ROOMS;SOURCES;DEPENDS;PRIVATE;HEADER_ONLY" ${ARGN})
   # In a unity build the constants of one source shadow nothing that matters in another.
   set(vernier_shadow $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)
@@ -17,12 +30,17 @@ function(vernier_module name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   # Products and sums are rounded one by one, so that results do not depend on how a compiler
   # pairs them; kernels that gain from fused operations say so themselves.
-  target_compile_options(${name} PRIVATE -Wall -Wextra ${vernier_shadow} -Wnon-virtual-dtor
-                                         -ffp-contract=off
-                                         # GCC 12 reports faults inside std::string and Eigen
-                                         # that are none
-                                         "$<$<CXX_COMPILER_ID:GNU>:${gcc_false_alarms}>")
-  target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
+  set(vernier_module_options
+      -Wall -Wextra ${vernier_shadow} -Wnon-virtual-dtor -ffp-contract=off
+      # GCC 12 reports faults inside std::string and Eigen that are none
+      "$<$<CXX_COMPILER_ID:GNU>:${gcc_false_alarms}>")
+  target_compile_options(${name} PRIVATE ${vernier_module_options})
+  if(NOT TARGET module_headers)
+    vernier_module_headers(module_headers)
+    target_compile_options(module_headers PRIVATE ${vernier_module_options})
+    set_target_properties(module_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM module_headers)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME vernier_${name}
                                            POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen ${ARG_DEPENDS})

@@ -19,12 +19,15 @@ function(vernier_sanitized_module name)
                              PRIVATE $<TARGET_PROPERTY:${name},INCLUDE_DIRECTORIES>)
   # With the assertions of Eigen; without warnings, which the other build gives. Eigen would align
   # its memory itself where addresses are checked, and the tests could not free it.
-  target_compile_options(
-    ${name}_sanitized PRIVATE -ffp-contract=off -O1 -g1 -UNDEBUG -DEIGEN_MALLOC_ALREADY_ALIGNED=1 -w
-                              ${sanitizer_checks}
-                              -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  set(sanitized_options -ffp-contract=off -O1 -g1 -UNDEBUG -DEIGEN_MALLOC_ALREADY_ALIGNED=1 -w
+      ${sanitizer_checks} -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_compile_options(${name}_sanitized PRIVATE ${sanitized_options})
   target_link_libraries(${name}_sanitized PRIVATE $<TARGET_PROPERTY:${name},LINK_LIBRARIES>)
-  target_precompile_headers(${name}_sanitized PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
+  if(NOT TARGET sanitized_headers)
+    vernier_module_headers(sanitized_headers)
+    target_compile_options(sanitized_headers PRIVATE ${sanitized_options})
+  endif()
+  target_precompile_headers(${name}_sanitized REUSE_FROM sanitized_headers)
   set_target_properties(${name}_sanitized PROPERTIES UNITY_BUILD ON)
   # Kernels for several instruction sets check addresses only: their thousands of temporary packs
   # would take minutes to compile with the other checks.

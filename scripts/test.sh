@@ -7,8 +7,10 @@ set -euo pipefail
 
 usage() {
   cat <<'USAGE'
-usage: scripts/test.sh [--quick] [--measure]
+usage: scripts/test.sh [--quick] [--apart] [--measure]
   --quick     skip the unit tests with address and undefined-behaviour sanitizers
+  --apart     compile each source of the libraries and of the program alone, not several in one
+              unit: twice the time, and a missing include is an error
   --measure   measure the compile time of each unit and fail if one is too slow; the build
               folder keeps this setting; units from the compiler cache are not measured unless
               CCACHE_RECACHE=1 is in the environment
@@ -16,10 +18,12 @@ USAGE
 }
 
 quick=no
+apart=no
 measure=no
 while (($# > 0)); do
   case "$1" in
     --quick) quick=yes ;;
+    --apart) apart=yes ;;
     --measure) measure=yes ;;
     -h | --help)
       usage
@@ -74,10 +78,11 @@ scripts/check_format.sh
 begin_part "release: build"
 options=(-DVERNIER_TEST_SHARDS=4 -DVERNIER_SANITIZED_TESTS=ON)
 if [[ $quick == yes ]]; then options+=(-DVERNIER_SANITIZED_TESTS=OFF); fi
+unity=ON
+if [[ $apart == yes ]]; then unity=OFF; fi
 if [[ $measure == yes ]]; then options+=(-DVERNIER_MEASURE_BUILD=ON); fi
-# Without unity builds, which hide missing includes.
 cmake --preset release -DVERNIER_BUILD_TESTS=ON -DVERNIER_BUILD_PROGRAM=ON \
-  -DCMAKE_UNITY_BUILD=OFF "${options[@]}"
+  -DCMAKE_UNITY_BUILD=$unity "${options[@]}"
 cmake --build --preset release --parallel "$jobs"
 begin_part "release: every installed header compiles alone"
 cmake --build --preset release --parallel "$jobs" --target all_verify_interface_header_sets

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/rig_limits.h"
@@ -113,7 +114,7 @@ Rig rig_of(std::vector<PlacedCamera> cameras) {
     rig.T_camera_first.push_back(rig.cameras.empty() ? Pose{}
                                                      : c.T_camera_reference *
                                                            cameras[0].T_camera_reference.inverse());
-    if (!(rig.T_camera_first.back().t.cwiseAbs().maxCoeff() <= internal::most_value)) {
+    if (!internal::all_within(rig.T_camera_first.back().t, internal::most_value)) {
       throw Error("camera " + internal::in_quotes(c.camera.name),
                   fmt::format("it is further than {:g} m from the first", internal::most_value),
                   "correct its position, or the unit of length");

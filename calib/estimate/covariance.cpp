@@ -13,6 +13,7 @@
 #include <numeric>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "calib/base/decompositions.h"
 #include "calib/error.h"
 #include "calib/statistics/scaled_root.h"
@@ -101,7 +102,7 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
   const ScaledEigen eigen(C);
   const Eigen::VectorXd& sd = eigen.deviations;
   const Eigen::MatrixXd unit = (sd * sd.transpose()).cwiseMax(std::numeric_limits<double>::min());
-  if (!((C - C.transpose()).cwiseQuotient(unit).cwiseAbs().maxCoeff() < 1e-9)) {
+  if (!all_within((C - C.transpose()).cwiseQuotient(unit), 1e-9)) {
     throw Error("covariance", "it is not symmetric", "check the rig file");
   }
   if (eigen.values[n - 1] < -1e-9 * std::max(eigen.values[0], 1.0)) {

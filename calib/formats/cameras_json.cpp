@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/rig_limits.h"
@@ -98,7 +99,7 @@ Camera parse_camera(const Node& node) {
 }  // namespace
 
 void check_bounded(const Eigen::MatrixXd& values, double most, const Node& node) {
-  if (values.size() == 0 || values.cwiseAbs().maxCoeff() <= most) return;
+  if (all_within(values, most)) return;
   throw Error(node.place(), fmt::format("holds a number beyond {:g}", most), "correct it");
 }
 

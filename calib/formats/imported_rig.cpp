@@ -6,6 +6,7 @@
 
 #include <Eigen/SVD>
 
+#include "calib/base/all_within.h"
 #include "calib/camera.h"
 #include "calib/camera/rig_limits.h"
 #include "calib/error.h"
@@ -44,7 +45,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& pl
 
 Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::string& place) {
   const Eigen::Vector3d t_m = unit_m * t;
-  if (!(t_m.cwiseAbs().maxCoeff() <= most_value)) {
+  if (!all_within(t_m, most_value)) {
     throw Error(place, fmt::format("a position is beyond {:g} m", most_value),
                 "correct it, or the unit of length");
   }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/statistics/quantile.h"
@@ -36,7 +37,7 @@ FloorPose above_floor(const Pose& T_world_camera,
                       const std::string& place) {
   const auto [axis, sign] = up_axis(options.up);
   constexpr double farthest_m = 1e4;
-  if (!(T_world_camera.t.cwiseAbs().maxCoeff() <= farthest_m)) {
+  if (!all_within(T_world_camera.t, farthest_m)) {
     throw Error(options.poses, "its pose of " + place + " is farther than 10 km from its origin",
                 "give metres, from an origin near the views");
   }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/base/json_node.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -26,7 +27,7 @@ namespace {
 Eigen::Vector2d parse_pixel(const JsonNode& node, const Camera& camera) {
   const Eigen::VectorXd pixel = node.vector();
   if (pixel.size() != 2) throw Error(node.place(), "is not a list of 2 numbers", "give u, v");
-  if (!(pixel.cwiseAbs().maxCoeff() <= 2.0 * camera.size_px.maxCoeff())) {
+  if (!all_within(pixel, 2.0 * camera.size_px.maxCoeff())) {
     throw Error(node.place(), "lies far off the image", "give pixels of the image");
   }
   return pixel;

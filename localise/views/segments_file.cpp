@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "calib/base/all_within.h"
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
 #include "calib/base/shown_text.h"
@@ -33,7 +34,7 @@ Json numbers(const auto& v) { return Json(std::vector<double>(v.begin(), v.end()
 
 Eigen::Vector3d point(const JsonNode& node) {
   const Eigen::Vector3d p = node.vector3();
-  if (!(p.cwiseAbs().maxCoeff() <= farthest_m)) {
+  if (!all_within(p, farthest_m)) {
     throw Error(node.place(), "is farther than 1,000 m", "give metres");
   }
   return p;
@@ -42,7 +43,7 @@ Eigen::Vector3d point(const JsonNode& node) {
 Eigen::Matrix<double, 6, 6> covariance(const JsonNode& node) {
   const Eigen::MatrixXd C = node.matrix();
   if (C.rows() != 6) throw Error(node.place(), "is not 6 x 6", "give that of both ends");
-  if (!(C.cwiseAbs().maxCoeff() <= largest_m2) || !(C.diagonal().minCoeff() >= 0)) {
+  if (!all_within(C, largest_m2) || !(C.diagonal().minCoeff() >= 0)) {
     throw Error(node.place(), "has a variance that is not from 0 to 1e6 m2",
                 "correct it, or leave the segment out");
   }
@@ -59,7 +60,7 @@ ImageSegmentInSpace parse_segment(const JsonNode& node) {
   ImageSegmentInSpace segment;
   const Eigen::VectorXd px = node.at("image_px").vector();
   constexpr double farthest_px = 1e6;
-  if (px.size() != 4 || !(px.cwiseAbs().maxCoeff() <= farthest_px)) {
+  if (px.size() != 4 || !all_within(px, farthest_px)) {
     throw Error(node.at("image_px").place(), "is not four numbers up to 1e6", "give u, v, u, v");
   }
   segment.image_px = {px.head<2>(), px.tail<2>()};
@@ -84,9 +85,8 @@ ImageSegmentInSpace parse_segment(const JsonNode& node) {
 
 /// What nearly has no disparity lies kilometres off.
 bool can_be_read(const stereo::internal::MeasuredSegment& s) {
-  return s.segment.a_m.cwiseAbs().maxCoeff() <= farthest_m &&
-         s.segment.b_m.cwiseAbs().maxCoeff() <= farthest_m &&
-         s.independent_m2.cwiseAbs().maxCoeff() <= largest_m2;
+  return all_within(s.segment.a_m, farthest_m) && all_within(s.segment.b_m, farthest_m) &&
+         all_within(s.independent_m2, largest_m2);
 }
 
 SegmentsOfImage parse_image(const JsonNode& node) {

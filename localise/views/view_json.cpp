@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/base/json_node.h"
 #include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
@@ -76,7 +77,7 @@ std::size_t entries(const JsonNode& node, const std::string& key, std::size_t mo
 Eigen::Vector3d parse_point(const JsonNode& node) {
   constexpr double furthest_m = 1000;
   const Eigen::Vector3d point = node.vector3();
-  if (point.cwiseAbs().maxCoeff() > furthest_m) {
+  if (!all_within(point, furthest_m)) {
     throw Error(node.place(), fmt::format("is further than {} m away", furthest_m),
                 "give metres in the robot frame");
   }
@@ -114,7 +115,7 @@ ImageSegment parse_segment(const JsonNode& node, const Camera* camera) {
   if (v.size() != 4) throw Error(node.place(), "is not a list of 4 numbers", "give u, v, u, v");
   const ImageSegment segment{{v[0], v[1]}, {v[2], v[3]}};
   const double most_px = camera ? 2.0 * camera->size_px.maxCoeff() : 1e6;
-  if (!(v.cwiseAbs().maxCoeff() <= most_px)) {
+  if (!all_within(v, most_px)) {
     throw Error(node.place(), "lies far off the image", "give pixels of the image");
   }
   if (!(segment.length_px() > shortest_px)) {

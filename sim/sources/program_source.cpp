@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/base/answering_program.h"
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
@@ -78,8 +79,7 @@ std::string view_line(const SensingContext& context, const SensedView& view) {
 
 ImageSegment parse_segment(const JsonNode& node) {
   const Eigen::VectorXd ends = node.vector();
-  if (ends.size() != 4 || !(ends.cwiseAbs().maxCoeff() <= most_px) ||
-      ends.head<2>() == ends.tail<2>()) {
+  if (ends.size() != 4 || !all_within(ends, most_px) || ends.head<2>() == ends.tail<2>()) {
     throw Error(node.place(), "is no segment within 1e6 pixels", "give u, v, u, v of its two ends");
   }
   return {ends.head<2>(), ends.tail<2>()};

@@ -146,6 +146,8 @@ def table_faults(good):
     for name, word in (('number 1e309', '1e309'), ('long number', '1' * 10_000),
                        ('control characters for a number', '\x1b[31m' * 100), ('nan', 'nan')):
         yield name, ''.join(lines[:-1]) + last[:number.start()] + word + last[number.end():] + '\n'
+    end = list(re.finditer(r'-?\d+(\.\d+)?', last))[-1]
+    yield 'nan at the end', ''.join(lines[:-1]) + last[:end.start()] + 'nan' + last[end.end():] + '\n'
     whole = re.search(r'\d+', last)
     yield 'whole number too large', (''.join(lines[:-1]) + last[:whole.start()] + '4294967297' +
                                      last[whole.end():] + '\n') if whole.start() == 0 else 'x'
@@ -427,6 +429,88 @@ class TextLimits(unittest.TestCase):
                 self.write('path.txt', text)
                 self.refuses(what, 'path.txt', 'odometry', '--left', 'left[01].pgm', '--right',
                              'right[01].pgm', '--rig', 'good.json', '--truth', 'path.txt')
+
+    def test_commands_of_a_drive(self):
+        drive = ('drive', '--world', 'workshop', '--rig', 'good.json', '--pose', '10,7.5,0',
+                 '--commands', 'commands.txt', '-o', 'd.jsonl')
+        for what, text in table_faults('speed_mps,turn_radps,duration_s\n0.3,0.1,0.5\n'):
+            self.write('commands.txt', text)
+            self.refuses(what, 'commands.txt', *drive)
+        good = '{"speed_mps": 0.3, "turn_radps": 0.1, "duration_s": 0.5}'
+        for what, text in json_faults(good):
+            self.write('commands.txt', good + '\n' + text + '\n' if text else '')
+            self.refuses(what, 'commands.txt', *drive)
+        self.assertFalse((self.folder / 'd.jsonl').exists())
+
+    def test_tunes(self):
+        self.write('posts.world.toml', verb_calls.WORLD)
+        self.write('yard.world.toml', verb_calls.WORLD.replace('[5, 2]', '[6, 2]'))
+        for what, text in toml_faults(verb_calls.TUNE):
+            self.write('t.toml', text)
+            self.refuses(what, 't.toml', 'tune', 't.toml', '-o', 'tuned')
+        self.assertFalse((self.folder / 'tuned').exists())
+
+    def test_segments_of_images(self):
+        verb_calls.write_seen(self.folder)
+        build = ('world', 'build', '--segments', 'seen.segments', '--poses', 'seen.csv', '-o', 'b.toml')
+        good = (self.folder / 'seen.segments').read_text()
+        first, _, others = good.partition('\n')
+        for what, text in json_faults(first):
+            if what == 'long key':
+                continue  # a key that is not known is passed over
+            self.write('seen.segments', text + '\n' + others if text else '')
+            self.refuses(what, 'seen.segments', *build)
+        self.write('seen.segments', good)
+        for what, text in table_faults((self.folder / 'seen.csv').read_text()):
+            self.write('seen.csv', text)
+            self.refuses(what, 'seen.csv', *build)
+
+    def test_meshes_and_lists_of_lines(self):
+        room = verb_calls.room()
+        lines = '0 0 0 0 0 2\n4 0 0 4 0 2\n4 3 0 4 3 2\n0 3 0 0 3 2.5\n'
+        vertex = re.search(r'(?m)^0 0 2\.5$', room)
+        faults = [('number 1e309', room[:vertex.start()] + '0 0 1e309' + room[vertex.end():]),
+                  ('nan', room[:vertex.start()] + '0 0 nan' + room[vertex.end():]),
+                  ('long number', room[:vertex.start()] + '0 0 ' + '1' * LONG + room[vertex.end():]),
+                  ('more elements than there are', room.replace('element face ', 'element face 9')),
+                  ('2^32 elements', room.replace('element vertex ', 'element vertex 42949672')),
+                  ('vertex that is none', room.rstrip()[:-1] + '99999999\n'),
+                  ('long line', room.replace('element face', 'x' * LONG + '\nelement face')),
+                  ('zero byte', room.replace('end_header', '\0\nend_header')),
+                  ('cut', room[:len(room) // 2])]
+        for what, text in faults:
+            self.write('room.ply', text)
+            self.refuses(what, 'room.ply', 'world', 'import', 'room.ply', '-o', 'i.toml')
+        for what, text in table_faults(lines):
+            self.write('lines.txt', text)
+            self.refuses(what, 'lines.txt', 'world', 'import', 'lines.txt', '--unit', 'm', '--up', 'z',
+                         '-o', 'i.toml')
+        self.assertFalse((self.folder / 'i.toml').exists())
+
+    def test_rigs_of_data_sets(self):
+        projection = '500 0 320 0 0 500 240 0 0 0 1 0'
+        other = '500 0 320 -60.5 0 500 240 0 0 0 1 0'
+        kitti = ('convert', 'calib.txt', '--from', 'kitti', '--size', '640x480', '-o', 'k.json')
+        for what, text in table_faults(f'P0: {projection}\nP1: {other}\n'):
+            if what == 'many fields':
+                continue  # other lines are passed over
+            self.write('calib.txt', text)
+            self.refuses(what, 'calib.txt', *kitti)
+        sensor = ('sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n'
+                  '  data: [1.0, 0.0, 0.0, {}, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, '
+                  '0.0, 0.0, 0.0, 1.0]\n'
+                  'resolution: [752, 480]\ncamera_model: pinhole\nintrinsics: [458.6, 457.2, 367.2, '
+                  '248.3]\ndistortion_model: radial-tangential\n'
+                  'distortion_coefficients: [-0.28, 0.07, 0.0002, 1.7e-05]\n')
+        for name, x in (('cam0', 0.0), ('cam1', 0.11)):
+            self.write(f'{name}/sensor.yaml', sensor.format(x))
+        asl = ('convert', 'cam0/sensor.yaml', 'cam1/sensor.yaml', '--from', 'asl', '-o', 'k.json')
+        self.assertEqual(Run(self.folder, *asl).code, 0)
+        (self.folder / 'k.json').unlink()
+        for what, text in yaml_faults(sensor.format(0.0)):
+            self.write('cam0/sensor.yaml', text)
+            self.refuses(what, 'cam0/sensor.yaml', *asl)
+        self.assertFalse((self.folder / 'k.json').exists())
 
     def test_maps(self):
         good = verb_calls.map_file(verb_calls.features().splitlines())

@@ -18,6 +18,7 @@
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/same_rig.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
@@ -248,9 +249,12 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
   add_warnings(inputs, result);
-  auto& warnings = result.joint.estimate.calibration->warnings;
-  const auto folds = inversion_warnings(result.joint.estimate.rig);
-  warnings.insert(warnings.end(), folds.begin(), folds.end());
+  const RigEstimate& estimate = result.joint.estimate;
+  CalibrationSummary& summary = *result.joint.estimate.calibration;
+  const auto folds = inversion_warnings(estimate.rig);
+  summary.warnings.insert(summary.warnings.end(), folds.begin(), folds.end());
+  const auto curved = curvature_warning(estimate.rig, *estimate.covariance);
+  if (curved) summary.trust_warnings.push_back(*curved);
   return result;
 }
 

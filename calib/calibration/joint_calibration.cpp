@@ -23,6 +23,7 @@
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/estimate/observability.h"
 #include "calib/pair_observations.h"
@@ -373,6 +374,8 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
   }
   const auto folds = inversion_warnings(result.estimate.rig);
   summary.warnings.insert(summary.warnings.end(), folds.begin(), folds.end());
+  const auto curved = curvature_warning(result.estimate.rig, *result.estimate.covariance);
+  if (curved) summary.trust_warnings.push_back(*curved);
   summary.warnings.insert(summary.warnings.begin(), diagnosis.warnings.begin(),
                           diagnosis.warnings.end());
   summary.trust_warnings.insert(summary.trust_warnings.begin(), diagnosis.trust_warnings.begin(),

@@ -35,6 +35,13 @@ struct StableCamera::Residual {
   Eigen::MatrixXd J;  ///< by the free intrinsics in σ, then the turn in turn units
 };
 
+/// A camera turned so that no turn is left in its image.
+struct StableCamera::Balance {
+  TurnedCamera turned;
+  Residual residual;
+  Eigen::Matrix3d by_turn;  ///< the inverse of the derivative of that turn by the frame's
+};
+
 StableCamera::StableCamera(const Camera& mean, const Eigen::MatrixXd& covariance) : mean_(mean) {
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
     if (covariance(i, i) > 0) free_.push_back(i);
@@ -84,6 +91,7 @@ bool StableCamera::linearise() {
   inverse_ = R.triangularView<Eigen::Upper>().solve(orthonormal_basis(slope_).transpose());
   const Eigen::MatrixXd turn = slope_.rightCols<3>();
   turns_ = -(turn.transpose() * turn).ldlt().solve(turn.transpose() * slope_.leftCols(n));
+  turn_left_ = inverse_.bottomRows<3>() - turns_ * inverse_.topRows(n);
   return inverse_.allFinite() && turns_.allFinite();
 }
 
@@ -170,48 +178,55 @@ std::optional<TurnedCamera> StableCamera::camera(const Eigen::VectorXd& stable) 
   return now;
 }
 
+// By Newton's method: the turn of the frame with which none is left in the image.
+std::optional<StableCamera::Balance> StableCamera::balance(const Camera& camera) const {
+  const Eigen::VectorXd moved_by = free(camera.parameters - mean_.parameters);
+  TurnedCamera now{camera, rotation_from_vector(turn_unit_rad_ * (turns_ * moved_by))};
+  for (int iteration = 0; iteration < most_solver_steps; ++iteration) {
+    auto found = residual(now);
+    if (!found) return std::nullopt;
+    const Eigen::Vector3d left = turn_left_ * found->r;
+    const Eigen::Matrix3d by_turn = (turn_left_ * found->J.rightCols<3>()).inverse();
+    if (left.norm() <= converged * (1 + (inverse_ * found->r).norm())) {
+      return Balance{now, *std::move(found), by_turn};
+    }
+    const Eigen::Vector3d step = by_turn * -left;
+    if (!step.allFinite()) return std::nullopt;
+    now.turn = rotation_from_vector(turn_unit_rad_ * step) * now.turn;
+  }
+  return std::nullopt;
+}
+
+StableCamera::Coordinates StableCamera::coordinates(const Balance& at) const {
+  const auto n = static_cast<Eigen::Index>(free_.size());
+  const auto all = at.turned.camera.parameters.size();
+  Coordinates result{at.turned.camera.parameters - mean_.parameters, at.turned.turn,
+                     Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
+  const Eigen::MatrixXd to_y = inverse_.topRows(n);
+  result.stable(free_) = sigma_.cwiseProduct(to_y * at.residual.r);
+  // The turn follows the intrinsics so that none is left.
+  const Eigen::MatrixXd& J = at.residual.J;
+  const Eigen::MatrixXd turned = -at.by_turn * (turn_left_ * J.leftCols(n));
+  const Eigen::MatrixXd moved_y = to_y * (J.leftCols(n) + J.rightCols<3>() * turned);
+  const Eigen::VectorXd per_sigma = sigma_.cwiseInverse();
+  result.by_intrinsics(free_, free_) = sigma_.asDiagonal() * moved_y * per_sigma.asDiagonal();
+  result.turn_by_intrinsics(Eigen::all, free_) = turn_unit_rad_ * turned * per_sigma.asDiagonal();
+  return result;
+}
+
 std::optional<StableCamera::Coordinates> StableCamera::coordinates(const Camera& camera) const {
   if (inverse_.size() == 0) {
     const auto all = camera.parameters.size();
     return Coordinates{camera.parameters - mean_.parameters, Eigen::Matrix3d::Identity(),
                        Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
   }
-  const auto n = static_cast<Eigen::Index>(free_.size());
-  // The turn V with C A⁺ r(i, V) = 0, C = (−turns, I), by Newton's method.
-  Eigen::MatrixXd C(3, n + 3);
-  C << -turns_, Eigen::Matrix3d::Identity();
-  const Eigen::MatrixXd D = C * inverse_;
-  const Eigen::VectorXd moved_by = free(camera.parameters - mean_.parameters);
-  TurnedCamera now{camera, rotation_from_vector(turn_unit_rad_ * (turns_ * moved_by))};
-  for (int iteration = 0; iteration < most_solver_steps; ++iteration) {
-    const auto found = residual(now);
-    if (!found) return std::nullopt;
-    const Eigen::Vector3d missing = D * found->r;
-    const Eigen::VectorXd y = inverse_ * found->r;
-    if (missing.norm() <= converged * (1 + y.norm())) {
-      const auto all = camera.parameters.size();
-      Coordinates result{camera.parameters - mean_.parameters, now.turn,
-                         Eigen::MatrixXd::Identity(all, all), Eigen::Matrix3Xd::Zero(3, all)};
-      result.stable(free_) = sigma_.cwiseProduct(y.head(n));
-      // The turn follows the intrinsics so that D r stays 0.
-      const Eigen::MatrixXd& J = found->J;
-      const Eigen::Matrix3d slope = D * J.rightCols<3>();
-      const Eigen::MatrixXd turned = -slope.inverse() * (D * J.leftCols(n));
-      const Eigen::MatrixXd moved_y =
-          inverse_.topRows(n) * (J.leftCols(n) + J.rightCols<3>() * turned);
-      const Eigen::VectorXd per_sigma = sigma_.cwiseInverse();
-      result.by_intrinsics(free_, free_) = sigma_.asDiagonal() * moved_y * per_sigma.asDiagonal();
-      result.turn_by_intrinsics(Eigen::all, free_) =
-          turn_unit_rad_ * turned * per_sigma.asDiagonal();
-      if (!result.by_intrinsics.allFinite() || !result.turn_by_intrinsics.allFinite()) break;
-      return result;
-    }
-    const Eigen::Matrix3d slope = D * found->J.rightCols<3>();
-    const Eigen::Vector3d step = slope.inverse() * -missing;
-    if (!step.allFinite()) return std::nullopt;
-    now.turn = rotation_from_vector(turn_unit_rad_ * step) * now.turn;
+  const auto at = balance(camera);
+  if (!at) return std::nullopt;
+  Coordinates result = coordinates(*at);
+  if (!result.by_intrinsics.allFinite() || !result.turn_by_intrinsics.allFinite()) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  return result;
 }
 
 }  // namespace vernier::internal

@@ -43,8 +43,7 @@ class StableCamera {
   std::optional<TurnedCamera> camera(const Eigen::VectorXd& stable) const;
 
   /// The parameters of a camera of the same model and with the same values of those without a
-  /// variance, its turn, and their derivatives by the
-  /// intrinsics (the turn's on the left).
+  /// variance, its turn, and their derivatives by the intrinsics (the turn's on the left).
   struct Coordinates {
     Eigen::VectorXd stable;
     Eigen::Matrix3d turn;
@@ -55,8 +54,11 @@ class StableCamera {
 
  private:
   struct Residual;
+  struct Balance;
   bool linearise();
   std::optional<Residual> residual(const TurnedCamera& at) const;
+  std::optional<Balance> balance(const Camera& camera) const;
+  Coordinates coordinates(const Balance& at) const;
   Eigen::VectorXd free(const Eigen::VectorXd& intrinsics) const;  ///< in σ
   TurnedCamera moved(const TurnedCamera& from, const Eigen::VectorXd& step) const;
 
@@ -70,6 +72,7 @@ class StableCamera {
   Eigen::MatrixXd slope_;        ///< A
   Eigen::MatrixXd inverse_;      ///< A⁺; empty if the camera has none
   Eigen::MatrixXd turns_;        ///< 3 x free: the turn that goes with each of them
+  Eigen::MatrixXd turn_left_;    ///< (−turns, I) A⁺: of r, the turn that is left in the image
 };
 
 }  // namespace vernier::internal

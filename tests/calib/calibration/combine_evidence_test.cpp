@@ -102,6 +102,34 @@ TEST(CombineEvidence, ADistortionThatCannotBeInvertedIsSaid) {
   EXPECT_EQ(folds_said(), 1);
 }
 
+// Pairs hold the direction of a long lens and a wide prior not its centre: no covariance says that.
+TEST(CombineEvidence, ALongLensOfAWidePriorIsDoubted) {
+  const auto doubts = [](const JointCalibration& joint) {
+    const std::vector<std::string>& said = joint.estimate.calibration->trust_warnings;
+    return std::count_if(said.begin(), said.end(), [](const std::string& warning) {
+      return warning.find("no covariance describes its errors") != std::string::npos;
+    });
+  };
+  for (const double f_px : {525.0, 6000.0}) {
+    Rig truth = test::stereo_rig();
+    for (Camera& camera : truth.cameras) {
+      camera.parameters[0] = f_px;
+      camera.parameters.tail(camera.parameters.size() - core_parameter_count).setZero();
+    }
+    truth.T_camera_first[1].R.setIdentity();
+    const double away = f_px / 525;
+    const PairObservations pairs = simulate_pairs(
+        truth, 61, 0, {.image_pairs = 6, .nearest_m = 1.5 * away, .farthest_m = 12 * away});
+    const GaussianRigPrior prior = test::datasheet(truth, 61, 0, f_px > 1000 ? 5 : 1);
+    const int expected = f_px > 1000;
+    EXPECT_EQ(doubts(calibrate_from_pairs(pairs, prior)), expected) << f_px;
+    RigEstimate known;
+    known.rig = prior.rig;
+    known.covariance = full_covariance(prior);
+    EXPECT_EQ(doubts(combine({{"datasheet", known, {}}, {"pairs", {}, pairs}}).joint), expected);
+  }
+}
+
 TEST(CombineEvidence, ABoardKeepsThePriorItWasCalibratedWith) {
   const Rig truth = test::stereo_rig();
   const auto board = simulate_board(truth, {}, {.seed = 34, .frames = 6});

@@ -13,6 +13,8 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/estimate/covariance_curvature.h"
+#include "calib/lens_models.h"
+#include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"
@@ -22,6 +24,7 @@
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
 #include "calib/statistics/distributions.h"
+#include "calib/statistics/random.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "tests/support/scenes.h"
 
@@ -147,19 +150,55 @@ TEST(StableCoordinates, SampledProjectionsOfANarrowLensAreTheLinearOnes) {
   }
 }
 
-TEST(StableCoordinates, DerivativesAreThoseOfDifferences) {
-  const Rig truth = rig_with_lens(3000);
-  const RigEstimate& mean = narrow();
-  const StableCoordinates about(mean.rig, mean.covariance->matrix);
-  const Eigen::VectorXd sigma = sigma_of(mean);
-  const Eigen::MatrixXd found = about.try_position(truth)->by_rig;
+/// Of the coordinates of `rig` about `mean`, against central differences.
+void expect_right_derivatives(const Rig& rig, const Rig& mean, const Eigen::MatrixXd& covariance) {
+  const StableCoordinates about(mean, covariance);
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const auto at = about.try_position(rig);
+  ASSERT_TRUE(at);
+  EXPECT_EQ(at->delta, about.try_coordinates(rig).value());
   for (Eigen::Index i = 0; i < sigma.size(); ++i) {
+    if (!(sigma[i] > 0)) continue;
     const Eigen::VectorXd step = 1e-3 * sigma[i] * Eigen::VectorXd::Unit(sigma.size(), i);
-    const Eigen::VectorXd numeric = (about.try_coordinates(retract(truth, step)).value() -
-                                     about.try_coordinates(retract(truth, -step)).value()) /
+    const Eigen::VectorXd numeric = (about.try_coordinates(retract(rig, step)).value() -
+                                     about.try_coordinates(retract(rig, -step)).value()) /
                                     (2 * step[i]);
-    const Eigen::VectorXd off = (found.col(i) - numeric).cwiseQuotient(sigma) * sigma[i];
-    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-4) << i;
+    for (Eigen::Index k = 0; k < sigma.size(); ++k) {
+      const double off = (at->by_rig(k, i) - numeric[k]) * sigma[i];
+      EXPECT_LT(std::abs(off), sigma[k] > 0 ? 1e-4 * sigma[k] : 1e-12) << k << " by " << i;
+    }
+  }
+}
+
+TEST(StableCoordinates, DerivativesAreThoseOfDifferences) {
+  expect_right_derivatives(rig_with_lens(3000), narrow().rig, narrow().covariance->matrix);
+}
+
+TEST(StableCoordinates, DerivativesOfUnlikeCamerasSomeOfThemHeld) {
+  Rig mean = test::stereo_rig(OpenCv5{});
+  mean.cameras.push_back(test::stereo_rig(Fisheye4{}).cameras[1]);
+  mean.cameras[2].name = "third";
+  mean.cameras[2].parameters[0] = 300;
+  mean.T_camera_first.push_back(
+      {rotation_from_vector({-0.1, 0.05, 0.2}), Eigen::Vector3d(0.1, 0.3, -0.02)});
+  mean.cameras[1] = rig_with_lens(900).cameras[1];  // with another model
+  Eigen::VectorXd sigma(parameter_count(mean));
+  for (int c = 0; c < 3; ++c) {
+    auto intrinsics = sigma.segment(intrinsics_index(mean, c), mean.cameras[c].parameters.size());
+    intrinsics.setConstant(3e-3);
+    intrinsics.head<4>() << 4, 2e-3, 3, 2;
+    if (c > 0) sigma.segment<6>(pose_index(mean, c)) << 4e-3, 4e-3, 2e-3, 2e-3, 2e-3, 4e-3;
+  }
+  sigma[intrinsics_index(mean, 0) + 1] = 0;                   // the first aspect factor
+  sigma.segment<2>(intrinsics_index(mean, 2) + 2).setZero();  // the third principal point
+  const Eigen::MatrixXd C = sigma.cwiseAbs2().asDiagonal();
+  RandomStream random({.seed = 9});
+  for (int trial = 0; trial < 3; ++trial) {
+    const Eigen::VectorXd delta =
+        sigma.cwiseProduct(random.normals(static_cast<int>(sigma.size())));
+    const auto moved = StableCoordinates(mean, C).try_rig(delta);
+    ASSERT_TRUE(moved);
+    expect_right_derivatives(moved->rig, mean, C);
   }
 }
 

@@ -148,6 +148,10 @@ void StudyReader::check_sweep_key(const toml::table& root,
 void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   const auto* sweep = section(root, "sweep");
   if (!sweep) return;
+  if (sweep->empty()) {
+    fail(*sweep, "[sweep] sweeps nothing",
+         "list values of a key, as \"sources.calibration\" = [0.1, 1, 10], or leave it out");
+  }
   // toml++ sorts tables by key; the order in the file decides which sweep is slowest.
   std::vector<std::pair<toml::source_position, std::string>> keys;
   for (const auto& [key, value] : *sweep) {

@@ -45,14 +45,7 @@ using namespace localise;
 
 namespace {
 
-/// Incremented when the meaning of stored results changes.
-constexpr int results_version = 1;
-
-/// The same of one method, also where a default changes, for those are not part of a key: `lines`
-/// since the recorded views tell whether places are equal.
-constexpr int lines_version = 5;
-
-/// The same of ceilings: 3 since the protocol's density counts.
+/// Of ceilings: 3 since the protocol's density counts.
 constexpr int ceiling_version = 3;
 
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
@@ -252,7 +245,7 @@ std::string ceiling_key(const Study& study, const StudyCell& cell) {
 }
 
 std::string calibration_key(const Study& study, const StudyCell& cell) {
-  std::string key = fmt::format("calibration {} {} {}", study.rig_fingerprint,
+  std::string key = fmt::format("calibration {} {} {} {}", results_version, study.rig_fingerprint,
                                 cell.told.observations.empty() ? "" : study.corners_fingerprint,
                                 cell.experiment.seed);
   for (const auto& [name, value] : settings_of(cell.told)) {

@@ -20,6 +20,15 @@ namespace vernier::sim::internal {
 /// Every setting in effect, by its dotted key: identifies a cell.
 std::map<std::string, std::string> settings_of(const ExperimentSettings& settings);
 
+/// Part of the key of every cell: incremented when trials of the same settings and seed give other
+/// results, so that a store begun before is not gone on with. 2: calibration errors are drawn in
+/// stable parameters. tests/sim/study/results_version_test.cpp tells when it must be.
+inline constexpr int results_version = 2;
+
+/// The same of the method `lines` alone, also where a default changes, for those are not part of a
+/// key. 5: the recorded views tell whether places are equal.
+inline constexpr int lines_version = 5;
+
 /// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
 /// of another size use other maps per trial and are therefore stored under another key.
 std::string cell_key(const Study& study, const StudyCell& cell);

@@ -125,9 +125,13 @@ class Plan(Base):
         words = ['plan', 'nominal', '--world', 'w.world.toml', '--trials', '18']
         plan = self.json(*words, '--success', '0.2')
         self.assertEqual([row['calibration'] for row in plan['success']], [0, 0.25, 0.5, 1, 2, 4])
-        impossible = self.json(*words, '--success', '0.9999', '--protocol', 'free', code=3)
         self.assertEqual(plan['target']['quantity'], 'success')
-        self.assertIn(impossible['reachable'], (True, False))
+        # Without any calibration error 60 trials exclude it.
+        impossible = self.json(*words[:-1], '60', '--success', '0.9999', '--protocol', 'path', code=3)
+        self.assertLess(impossible['success'][0]['success_interval_95'][1], 0.9999)
+        self.assertIs(impossible['reachable'], False)
+        self.assertIsNone(impossible['views'])
+        self.assertIn('without any calibration error success is', impossible['limit'])
 
     def test_too_few_trials_to_tell(self):
         # At every scale at most 12 of 12 succeed, and the limits hold 0.97: nothing is known.

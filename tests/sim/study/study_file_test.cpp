@@ -245,6 +245,11 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
             std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sweep]\nsources.edge_loss = [1]\n").find("quoted"),
             std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[sweep]\n").find("s.toml:2: [sweep] sweeps nothing"),
+            std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[sweep]\n\"sources.edge_loss\" = []\n")
+                .find("s.toml:3: the sweep of sources.edge_loss is empty"),
+            std::string::npos);
   for (const std::string key : {"study.trials", "sources.file", "rig.truth", "robot.wheels"}) {
     EXPECT_NE(complaint_of("[study]\n[sweep]\n\"" + key + "\" = [1]\n")
                   .find("s.toml:3: '" + key + "' cannot be swept"),

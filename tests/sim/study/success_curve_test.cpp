@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "calib/rig_estimate.h"
@@ -60,6 +61,32 @@ TEST(SuccessCurve, IsTheSameForAnyNumberOfThreadsAndFallsWithTheError) {
     EXPECT_EQ(one[i].interval_95, two[i].interval_95);
   }
   EXPECT_GT(one[0].success, one[2].success);
+}
+
+// Nearly all edges are lost, and little else goes wrong: without that loss all is well.
+TEST(SuccessCurve, TheCauseThatLimitsMostComesFirst) {
+  ExperimentSettings settings;
+  settings.map_spacing_m = 1;
+  settings.sources.edge_loss = 0.93;
+  const auto& rig = test::nominal_rig();
+  const SuccessCurveOptions options{.psi_c = {0}, .trials = 24, .threads = 2};
+  const std::vector<LimitingCause> causes =
+      limiting_causes(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options);
+  ASSERT_GT(causes.size(), 2u);
+  EXPECT_EQ(causes[0].name, "edge_loss");
+  const double now =
+      success_curve(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options)[0]
+          .success;
+  EXPECT_GT(causes[0].success, now + 0.3);
+  EXPECT_LT(causes[1].success, now + 0.3);
+  EXPECT_TRUE(std::none_of(causes.begin(), causes.end(),
+                           [](const LimitingCause& c) { return c.name == "calibration"; }));
+  // What is switched off already limits nothing.
+  settings.sources.edge_loss = 0;
+  for (const LimitingCause& cause : limiting_causes(test::small_office_visibility(), rig.rig,
+                                                    *rig.covariance, settings, options)) {
+    EXPECT_NE(cause.name, "edge_loss");
+  }
 }
 
 }  // namespace

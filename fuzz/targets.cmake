@@ -2,14 +2,18 @@
 set(vernier_fuzz_targets
   cli/localisation/place_poses.cpp
   cli/report/report_evaluation.cpp
+  cli/robot/drive_commands.cpp
+  cli/simulation/observation_json.cpp
   fuzz/example_rigs.cpp
   fuzz/fuzz_target.cpp
   fuzz/same_values.cpp
   fuzz/targets/asl_sensor.cpp
+  fuzz/targets/camera_path.cpp
   fuzz/targets/camera_poses.cpp
   fuzz/targets/colmap.cpp
   fuzz/targets/corners_vnl.cpp
   fuzz/targets/disparity_map.cpp
+  fuzz/targets/drive_commands.cpp
   fuzz/targets/evaluation_json.cpp
   fuzz/targets/ifc_unit.cpp
   fuzz/targets/image_bytes.cpp
@@ -31,6 +35,7 @@ set(vernier_fuzz_targets
   fuzz/targets/rig_json.cpp
   fuzz/targets/ros_camera_info.cpp
   fuzz/targets/segments_file.cpp
+  fuzz/targets/source_answer.cpp
   fuzz/targets/stereo_scenes.cpp
   fuzz/targets/study_store.cpp
   fuzz/targets/study_toml.cpp

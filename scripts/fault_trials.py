@@ -35,6 +35,7 @@ sys.dont_write_bytecode = True
 import verb_calls
 
 OLD = b'an old file\n'
+STUDIES = ('study', 'study_merge')  # whose output is the folder of a study
 LEFTOVERS = ('.vernier-*.tmp', 'results*.sqlite-wal', 'results*.sqlite-shm',
              'results*.sqlite-journal', 'results*.sqlite', '*.lock')
 
@@ -85,7 +86,7 @@ class Trials:
         found = {name: content for name, content in self.files(folder).items()
                  if not name.endswith(('.sqlite', '-wal', '-shm', '-journal', '.lock'))
                  and not fnmatch.fnmatch(pathlib.Path(name).name, '.vernier-*.tmp')}
-        if call.name == 'study':
+        if call.name in STUDIES:
             done = subprocess.run([self.program, 'study', 'status', 'out', '--json'], cwd=folder,
                                   capture_output=True, text=True)
             status = json.loads(done.stdout) if done.stdout else {'failed': done.stderr}
@@ -141,7 +142,7 @@ class Trials:
     def trial(self, call, chance):
         """One kill. Returns (state when killed, faults)."""
         folder = self.place(call.name)
-        had_old = call.name not in ('study', 'tune') and chance.random() < 0.5
+        had_old = call.name not in (*STUDIES, 'tune') and chance.random() < 0.5
         if had_old:
             self.put_old_files(call, folder)
         aimed = chance.random() < 0.5

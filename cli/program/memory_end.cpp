@@ -4,11 +4,13 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 #include <opencv2/core.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "calib/base/unfinished_work.h"
@@ -47,6 +49,12 @@ void write_line(const char* text) noexcept {
   std::abort();
 }
 
+/// How oneTBB says that it cannot start a thread ("pthread_create has failed: …").
+bool is_of_tbb(std::string_view what) noexcept {
+  return what.starts_with("pthread_") &&
+         (what.ends_with(std::strerror(EAGAIN)) || what.ends_with(std::strerror(ENOMEM)));
+}
+
 }  // namespace
 
 bool is_out_of_memory(const std::exception& fault) noexcept {
@@ -60,7 +68,7 @@ bool is_out_of_memory(const std::exception& fault) noexcept {
            of_system->code() == std::errc::not_enough_memory;
   }
   return dynamic_cast<const std::bad_alloc*>(&fault) ||
-         dynamic_cast<const std::length_error*>(&fault);
+         dynamic_cast<const std::length_error*>(&fault) || is_of_tbb(fault.what());
 }
 
 void watch_memory() noexcept { std::set_terminate(on_terminate); }

@@ -130,6 +130,14 @@ std::vector<DriveCommand> read_commands(const std::string& file, const Different
   return commands;
 }
 
+std::optional<DriveCommand> parse_drive_answer(std::string_view line,
+                                               const DifferentialDrive& drive) {
+  const Json json = parse_json(line, "answer");
+  const JsonNode node(json, "answer:");
+  if (node.has("done") && json.size() == 1 && json["done"] == true) return std::nullopt;
+  return command_of(node, drive);
+}
+
 Json observation_json(const RobotObservation& seen) {
   Json json{{"frame", seen.frame},
             {"time_s", seen.time_s},
@@ -169,12 +177,7 @@ DrivingProgram::DrivingProgram(const std::string& command,
 
 std::optional<DriveCommand> DrivingProgram::command(const RobotObservation& seen) {
   std::optional<DriveCommand> chosen;
-  const auto take = [&](std::string_view line) {
-    const Json json = parse_json(line, "answer");
-    const JsonNode node(json, "answer:");
-    if (node.has("done") && json.size() == 1 && json["done"] == true) return;
-    chosen = command_of(node, drive_);
-  };
+  const auto take = [&](std::string_view line) { chosen = parse_drive_answer(line, drive_); };
   const auto question = [&] { return observation_json(seen).dump() + "\n"; };
   if (!program_.ask(question, take)) failure_ = program_.failure();
   return failure_.empty() ? chosen : std::nullopt;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/base/answering_program.h"
@@ -19,6 +20,10 @@ namespace vernier::cli {
 /// The commands of a file, all checked: lines of JSON, or of CSV under a header with the same names
 /// (docs/file-formats.md). "-": standard input. Throws Error with file and line.
 std::vector<DriveCommand> read_commands(const std::string& file, const DifferentialDrive& drive);
+
+/// What a program says to an observation: a command, or nothing if it is done. Throws Error.
+std::optional<DriveCommand> parse_drive_answer(std::string_view line,
+                                               const DifferentialDrive& drive);
 
 /// What a robot is told of an observation, with nothing of the truth: a line of JSON for a program,
 /// and of the output.

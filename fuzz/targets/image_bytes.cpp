@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,7 @@
 #include "calib/base/jpeg_rewriting.h"
 #include "fuzz/fuzz_target.h"
 #include "stereo/grey_levels.h"
+#include "stereo/image/depth_image.h"
 
 namespace vernier::fuzz {
 namespace {
@@ -29,6 +31,16 @@ void run_image(std::string_view bytes, const char* name) {
   largest_grey_value(bytes);
   const auto levels = accepted([&] { return stereo::read_grey_levels(file); });
   const auto grey = accepted([&] { return read_grey_image(file); });
+  constexpr double millimetre_m = 1e-3;
+  const auto depth =
+      accepted([&] { return stereo::internal::read_depth_image(file, millimetre_m); });
+  if (depth) {
+    require(
+        std::any_of(depth->depth_m.begin(), depth->depth_m.end(), [](float z) { return z > 0; }) &&
+            depth->depth_m.size() == static_cast<std::size_t>(depth->width_px) *
+                                         static_cast<std::size_t>(depth->height_px),
+        "a depth map has a value for every pixel, and knows some");
+  }
   if (grey) require(grey->type() == CV_8U && !grey->empty(), "an image has 8-bit grey values");
   if (!levels) return;
   require(levels->values.size() == static_cast<std::size_t>(levels->width_px) *

@@ -439,10 +439,13 @@ class Children(FaultCase):
 class Kills(Case):
     def test_no_kill_leaves_a_half_output(self):
         script = cli_test.ROOT / 'scripts/fault_trials.py'
-        done = subprocess.run([sys.executable, script, cli_test.PROGRAM, '--kills', '30'],
+        verbs = [call.name for call in verb_calls.calls() if call.outputs]
+        done = subprocess.run([sys.executable, script, cli_test.PROGRAM, '--kills', str(len(verbs))],
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn('30 kills, 0 trials failed', done.stdout)
+        self.assertIn(f'{len(verbs)} kills, 0 trials failed', done.stdout)
+        for verb in verbs:
+            self.assertRegex(done.stdout, rf'(?m)^{verb} ')
 
 
 if __name__ == '__main__':

@@ -238,6 +238,54 @@ function inspect() {
   };
 }
 
+/** Runs in the page: text too faint on its ground (below 4.5 to 1), and sections without height. */
+function inspect_medium() {
+  const channels = (colour) => (colour.match(/[\d.]+/g) ?? []).map(Number);
+  const luminance = ([r, g, b]) => [r, g, b].map((v) => v / 255)
+    .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+  const ground = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const colour = channels(getComputedStyle(at).backgroundColor);
+      if (colour.length === 3 || colour[3] === 1) return luminance(colour);
+    }
+    return 1;
+  };
+  const faint = [...document.querySelectorAll("h1, h2, h3, p, td, th, li, svg.main-svg text, button")]
+    .filter((one) => one.textContent.trim() && one.getClientRects().length)
+    .filter((one) => {
+      const style = getComputedStyle(one);
+      const text = luminance(channels(one instanceof SVGElement ? style.fill : style.color));
+      const [low, high] = [text, ground(one)].sort((a, b) => a - b);
+      return (high + 0.05) / (low + 0.05) < 4.5;
+    });
+  return {
+    faint: faint.length && `${faint.length} texts, as "${faint[0].textContent.trim().slice(0, 40)}"`,
+    ground: ground(document.body),
+    hidden: [...document.querySelectorAll("main > section")].filter((one) => !one.offsetHeight)
+      .map((one) => one.id),
+    too_wide: document.documentElement.scrollWidth - window.innerWidth,
+  };
+}
+
+/** The page in the dark, and printed. */
+async function faults_of_media(page, picture) {
+  const faults = [];
+  for (const [name, media] of [["light", { colorScheme: "light" }], ["dark", { colorScheme: "dark" }],
+    ["print", { media: "print", colorScheme: "light" }]]) {
+    await page.emulateMedia(media);
+    await page.waitForTimeout(300);
+    const seen = await page.evaluate(inspect_medium);
+    if (seen.faint) faults.push(`${name}: too faint: ${seen.faint}`);
+    if ((name === "dark") !== (seen.ground < 0.1)) faults.push(`${name}: its ground is ${seen.ground}`);
+    if (seen.hidden.length) faults.push(`${name}: sections without height: ${seen.hidden}`);
+    if (seen.too_wide > 0) faults.push(`${name}: ${seen.too_wide} px wider than its window`);
+    if (picture) await page.screenshot({ path: picture(name), fullPage: true });
+  }
+  await page.emulateMedia({ media: null, colorScheme: null });
+  return faults;
+}
+
 /** Opens a page at the first of the widths, and resizes it to the others. */
 async function check_page(browser, one, widths, screenshots) {
   const { file } = one;
@@ -258,6 +306,10 @@ async function check_page(browser, one, widths, screenshots) {
     const seen = await page.evaluate(inspect);
     faults.push(...faults_of(one, seen));
     if (one.plotly) faults.push(...await choose_another_cell(page));
+    if (width === widths[0]) {
+      faults.push(...await faults_of_media(page, screenshots
+        && ((name) => path.join(screenshots, `${path.basename(file, ".html")}-${width}-${name}.png`))));
+    }
     if (screenshots) {
       const picture = path.join(screenshots, `${path.basename(file, ".html")}-${width}.png`);
       await page.screenshot({ path: picture, fullPage: true });

@@ -8,6 +8,7 @@
 import os
 import pathlib
 import resource
+import shutil
 import struct
 import subprocess
 import sys
@@ -350,13 +351,33 @@ class Memory(Case):
                 ran_out += 'out of memory' in done.err
         self.assertGreater(ran_out, 3)
 
+    def test_every_verb(self):
+        verb_calls.write_inputs(self.folder)
+        least_mb = self.least_virtual_mb()
+        ran_out = set()
+        for more_mb in (4, 10, 25):  # with less the stack cannot grow, which is a fault
+            for call in verb_calls.calls():
+                done = self.call(*call.words, virtual_mb=least_mb + more_mb)
+                said = f'{call.name} with {least_mb + more_mb} MB: {done.code} {done.err[-300:]}'
+                self.assertIn(done.code, (call.code, 2), said)
+                if done.code == 2:
+                    self.assertTrue(done.err.splitlines()[-1].startswith('vernier: '), said)
+                if 'out of memory' in done.err:
+                    ran_out.add(call.name)
+                shutil.rmtree(self.folder / 'out', ignore_errors=True)
+        self.assertGreater(len(ran_out), 8, ran_out)
+
     def least_virtual_mb(self):
         """What the program needs to start at all."""
-        for virtual_mb in range(100, 4000, 20):
-            if self.call('--version', virtual_mb=virtual_mb).code == 0:
-                return virtual_mb
-        self.fail('--version needs more than 4 GB')
-        return None
+        too_few, enough = 50, 4000
+        while enough - too_few > 1:
+            middle = (too_few + enough) // 2
+            if self.call('--version', virtual_mb=middle).code == 0:
+                enough = middle
+            else:
+                too_few = middle
+        self.assertLess(enough, 4000)
+        return enough
 
 
 if __name__ == '__main__':

@@ -61,9 +61,15 @@ class Streams(unittest.TestCase):
             self.assertLess(abs(found[name] - size), 0.02 * size + 100, name)
 
     def test_every_verb_is_among_the_calls(self):
-        text = subprocess.run([PROGRAM, '--help'], capture_output=True, text=True).stdout
-        listed = re.findall(r'(?m)^  ([a-z]+)  ', text[text.index('Subcommands:'):])
-        self.assertEqual({call.words[0] for call in verb_calls.calls()}, set(listed))
+        def listed(*words):
+            text = subprocess.run([PROGRAM, *words, '--help'], capture_output=True, text=True).stdout
+            _, _, verbs = text.partition('Subcommands:')
+            return re.findall(r'(?m)^  ([a-z]+)  ', verbs)
+        called = {tuple(call.words[:2]) for call in verb_calls.calls()}
+        self.assertEqual({words[0] for words in called}, set(listed()))
+        for verb in listed():
+            for under in listed(verb):
+                self.assertIn((verb, under), called)
 
     def test_a_missing_or_full_standard_error_changes_nothing(self):
         for call in verb_calls.calls():

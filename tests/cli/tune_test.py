@@ -109,15 +109,19 @@ class Tune(unittest.TestCase):
     def test_an_interrupted_search_goes_on_to_the_same_end(self):
         self.write((STUDY + SWEEP + TUNE).replace('= 60', '= 180'))
         whole = self.tune(out='whole')
-        ended = 0
+        ended, told = 0, 0
         for after_s in (0.6, 1.0):
             with subprocess.Popen([PROGRAM, 'tune', 't.toml', '-o', 'cut', '--threads', '1'],
                                   cwd=self.folder, stderr=subprocess.PIPE, text=True) as process:
                 time.sleep(after_s)
                 process.send_signal(signal.SIGINT if after_s < 0.8 else signal.SIGKILL)
-                process.communicate()
+                said = process.communicate()[1]
                 ended += process.returncode < 0
+                if process.returncode == -signal.SIGINT:
+                    self.assertIn('tune t.toml -o cut --threads 1', said.splitlines()[-1])
+                    told += 1
         self.assertGreater(ended, 0)
+        self.assertGreater(told, 0)
         self.assertEqual(untimed(self.tune(out='cut')), untimed(whole))
 
     def test_its_folders_are_studies(self):

@@ -211,6 +211,8 @@ def calls():
                               '20', '-o', 'out.toml'], ['out.toml']),
         Call('characterise_sequence', [*characterise_test.SEQUENCE, '-o', 'out.toml'], ['out.toml']),
         Call('world', ['world', 'make', '--seed', '7', '-o', 'out.toml'], ['out.toml']),
+        Call('world_info', ['world', 'info', 'posts.world.toml'], []),
+        Call('world_sets', ['world', 'sets', 'posts.world.toml', '-o', 'out.toml'], ['out.toml']),
         Call('world_import', ['world', 'import', 'room.ply', '-o', 'out.toml', '--plan', 'out.svg'],
              ['out.toml', 'out.svg']),
         Call('world_build', ['world', 'build', '--segments', 'seen.segments', '--poses', 'seen.csv',
@@ -233,6 +235,8 @@ def calls():
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('tune', ['tune', 'tune.toml', '-o', 'out', '--threads', '1'], ['out']),
         # A study without results, which the program alone can make: it says so.
+        Call('study_status', ['study', 'status', 'begun'], []),
+        Call('study_merge', ['study', 'merge', 'begun', '-o', 'out'], ['out'], code=3),
         Call('export', ['export', 'begun', '-o', 'out.csv'], ['out.csv'], code=3),
         Call('lines', ['lines', '--image', 'left.pgm', '--depth', 'depth.png', '--rig', 'rig.json',
                        '--segments', 'out.segments', '-o', 'out.jsonl'], ['out.segments', 'out.jsonl']),

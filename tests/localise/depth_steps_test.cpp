@@ -26,6 +26,7 @@ TEST(StepsAtEdges, TellAnImagesOwnMap) {
     std::vector<EdgePoint> edges;
     for (int y = 0; y < height; ++y) {
       EdgePoint e{};
+      e.normal.setZero();
       e.pixel_px = {column_px, static_cast<float>(y)};
       edges.push_back(e);
     }

@@ -3,7 +3,6 @@ set(vernier_fuzz_targets
   cli/localisation/place_poses.cpp
   cli/report/report_evaluation.cpp
   cli/robot/drive_commands.cpp
-  cli/simulation/observation_json.cpp
   fuzz/example_rigs.cpp
   fuzz/fuzz_target.cpp
   fuzz/same_values.cpp

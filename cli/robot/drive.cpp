@@ -21,6 +21,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/robot/drive_commands.h"
+#include "cli/robot/driving_program.h"
 #include "cli/robot/robot_options.h"
 #include "cli/simulation/plan_picture.h"
 #include "localise/place.h"

@@ -102,31 +102,26 @@ TEST(CombineEvidence, ADistortionThatCannotBeInvertedIsSaid) {
   EXPECT_EQ(folds_said(), 1);
 }
 
-// Pairs hold the direction of a long lens and a wide prior not its centre: no covariance says that.
-TEST(CombineEvidence, ALongLensOfAWidePriorIsDoubted) {
+// What 600 corners of a scene leave open of a lens is known by the prior alone: of a wide one the
+// errors are far from normal.
+TEST(CombineEvidence, AWidePriorOfTheLensIsDoubted) {
   const auto doubts = [](const JointCalibration& joint) {
     const std::vector<std::string>& said = joint.estimate.calibration->trust_warnings;
     return std::count_if(said.begin(), said.end(), [](const std::string& warning) {
       return warning.find("no covariance describes its errors") != std::string::npos;
     });
   };
-  for (const double f_px : {525.0, 6000.0}) {
-    Rig truth = test::stereo_rig();
-    for (Camera& camera : truth.cameras) {
-      camera.parameters[0] = f_px;
-      camera.parameters.tail(camera.parameters.size() - core_parameter_count).setZero();
-    }
-    truth.T_camera_first[1].R.setIdentity();
-    const double away = f_px / 525;
-    const PairObservations pairs = simulate_pairs(
-        truth, 61, 0, {.image_pairs = 6, .nearest_m = 1.5 * away, .farthest_m = 12 * away});
-    const GaussianRigPrior prior = test::datasheet(truth, 61, 0, f_px > 1000 ? 5 : 1);
-    const int expected = f_px > 1000;
-    EXPECT_EQ(doubts(calibrate_from_pairs(pairs, prior)), expected) << f_px;
+  const Rig truth = test::stereo_rig();
+  const PairObservations pairs = simulate_pairs(truth, 61, 0, {.image_pairs = 6});
+  for (const double scale : {1.0, 5.0}) {
+    const GaussianRigPrior prior = test::datasheet(truth, 61, 0, scale);
+    const int expected = scale > 1;
+    EXPECT_EQ(doubts(calibrate_from_pairs(pairs, prior)), expected) << scale;
     RigEstimate known;
     known.rig = prior.rig;
     known.covariance = full_covariance(prior);
-    EXPECT_EQ(doubts(combine({{"datasheet", known, {}}, {"pairs", {}, pairs}}).joint), expected);
+    EXPECT_EQ(doubts(combine({{"datasheet", known, {}}, {"pairs", {}, pairs}}).joint), expected)
+        << scale;
   }
 }
 

@@ -1,5 +1,5 @@
 # vernier_module_headers(NAME): what nearly every source includes, compiled once for all targets with
-# the same options, which name it by REUSE_FROM. It links to nothing: the compiler refuses a
+# the same options, which name it by REUSE_FROM. It links to Eigen alone: the compiler refuses a
 # precompiled header with a definition that a source does not have.
 function(vernier_module_headers name)
   file(CONFIGURE OUTPUT ${name}.cpp CONTENT "")
@@ -35,12 +35,12 @@ function(vernier_module name)
       # GCC 12 reports faults inside std::string and Eigen that are none
       "$<$<CXX_COMPILER_ID:GNU>:${gcc_false_alarms}>")
   target_compile_options(${name} PRIVATE ${vernier_module_options})
-  if(NOT TARGET module_headers)
-    vernier_module_headers(module_headers)
-    target_compile_options(module_headers PRIVATE ${vernier_module_options})
-    set_target_properties(module_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(NOT TARGET vernier_headers)
+    vernier_module_headers(vernier_headers)
+    target_compile_options(vernier_headers PRIVATE ${vernier_module_options})
+    set_target_properties(vernier_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
-  target_precompile_headers(${name} REUSE_FROM module_headers)
+  target_precompile_headers(${name} REUSE_FROM vernier_headers)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME vernier_${name}
                                            POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen ${ARG_DEPENDS})

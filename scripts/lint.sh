@@ -112,6 +112,9 @@ if [[ -n $since ]]; then
     if [[ $file == *.h ]] || grep --quiet --line-regexp --fixed-strings "$PWD/$file" \
       "$results/sources"; then
       files+=("$PWD/$file")
+    elif grep --quiet "/Unity/unity_" "$results/sources" && [[ $file =~ ^(calib|stereo|localise|sim|cli)/ ]]; then
+      refuse "$build is a unity build, which does not compile $file alone: configure another folder" \
+        "with -DCMAKE_UNITY_BUILD=OFF, and give it as --build"
     fi
   done < <(
     git diff --name-only --diff-filter=d -z "$since" -- '*.cpp' '*.h'

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/base/joined_numbers.h"
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -25,11 +24,6 @@ std::optional<std::size_t> end_of_exponent(std::string_view word, std::size_t di
   return e + 2 + digits;
 }
 
-std::optional<double> finite_number(std::string_view word) {
-  const std::optional<double> value = to_real(word);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
 /// Whether one digit stands before the point, as %e writes it: 2.0e+00, and not 02.0e+00.
 bool has_one_leading_digit(std::string_view word) {
   const std::size_t at = word.starts_with('-') || word.starts_with('+') ? 1 : 0;
@@ -41,7 +35,7 @@ std::optional<std::pair<double, double>> two_numbers(std::string_view word) {
   for (const std::size_t digits : {2, 3}) {
     const std::optional<std::size_t> end = end_of_exponent(word, digits);
     if (!end || !has_one_leading_digit(word.substr(*end))) continue;
-    const auto a = finite_number(word.substr(0, *end)), b = finite_number(word.substr(*end));
+    const auto a = to_finite(word.substr(0, *end)), b = to_finite(word.substr(*end));
     if (a && b) return std::pair{*a, *b};
   }
   return {};
@@ -52,7 +46,7 @@ std::optional<std::pair<double, double>> two_numbers(std::string_view word) {
 std::vector<double> joined_numbers(std::string_view line, const std::string& place) {
   std::vector<double> numbers;
   for (const std::string_view word : split_fields(line, " \t\r")) {
-    if (const auto one = finite_number(word)) {
+    if (const auto one = to_finite(word)) {
       numbers.push_back(*one);
     } else if (const auto two = two_numbers(word)) {
       numbers.insert(numbers.end(), {two->first, two->second});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 
 #include "calib/base/atomic_file.h"
@@ -99,6 +100,11 @@ std::optional<double> to_real(std::string_view text) {
   }
   if (error != std::errc()) return {};
   return value;
+}
+
+std::optional<double> to_finite(std::string_view text) {
+  const std::optional<double> value = to_real(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 double parse_real(std::string_view field, const std::string& place, std::string_view what) {

@@ -47,6 +47,9 @@ std::vector<std::string_view> split_fields(std::string_view line, std::string_vi
 /// value too small for a double is 0; one too large, or of more than 1,000 bytes, is not accepted.
 std::optional<double> to_real(std::string_view text);
 
+/// The same, but for infinities and "nan".
+std::optional<double> to_finite(std::string_view text);
+
 /// Parses a number. Throws Error(`place`), naming `what`, if `field` is not one.
 double parse_real(std::string_view field, const std::string& place, std::string_view what);
 int parse_whole(std::string_view field, const std::string& place, std::string_view what);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
+#include <new>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -29,8 +31,19 @@ struct UnfinishedWork {
 };
 
 UnfinishedWork& work() {
-  static UnfinishedWork* const only = new UnfinishedWork;  // never destroyed: threads may outlive
+  // Never destroyed: threads may outlive it. Not allocated: it is asked when memory has run out.
+  alignas(UnfinishedWork) static std::byte place[sizeof(UnfinishedWork)];
+  static UnfinishedWork* const only = new (place) UnfinishedWork;
   return *only;
+}
+
+void remove_with_content(const std::string& folder) noexcept {
+  try {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  } catch (const std::bad_alloc&) {  // what is left is in a temporary folder
+    return;
+  }
 }
 
 std::string absolute_name(const std::filesystem::path& path) {
@@ -75,13 +88,12 @@ void abandon_unfinished_work() noexcept {
   for (const Child& child : work().children) {
     ::kill(child.whole_group ? -child.id : child.id, SIGKILL);
   }
-  std::error_code ignored;
   const std::vector<UnfinishedPath>& paths = work().paths;
   for (std::size_t i = paths.size(); i-- > 0;) {  // what was made last first
     if (paths[i].kind == Unfinished::folder) {
-      std::filesystem::remove_all(paths[i].path, ignored);
+      remove_with_content(paths[i].path);
     } else {
-      std::filesystem::remove(paths[i].path, ignored);  // a folder only if it is empty
+      std::remove(paths[i].path.c_str());  // a folder only if it is empty
     }
   }
 }

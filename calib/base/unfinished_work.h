@@ -31,7 +31,8 @@ void forget_child(pid_t child) noexcept;
 /// must not be cut in two, and for the start of a program.
 std::unique_lock<std::recursive_mutex> hold_off_abandoning();
 
-/// Kills the programs and removes the files and folders noted. From then on every other function of
+/// Kills the programs and removes the files and folders noted; needs no memory but for folders with
+/// content. From then on every other function of
 /// this header blocks for ever, so that other threads make nothing new while the process ends.
 void abandon_unfinished_work() noexcept;
 

@@ -63,7 +63,10 @@ StableCamera::StableCamera(const Camera& mean, const Eigen::MatrixXd& covariance
   if (rays_.size() < fewest_pixels) return;
   weights_.assign(rays_.size(), 1);
   const auto n = static_cast<Eigen::Index>(free_.size());
-  if (!linearise()) return;
+  if (!linearise()) {
+    inverse_.resize(0, 0);
+    return;
+  }
   // Pixels that are badly known in spite of the turn, such as those that no board reached, count
   // for as little as is known of them.
   const Eigen::MatrixXd by_intrinsics =

@@ -246,7 +246,7 @@ const std::string& Line::word(std::size_t index) const {
 
 double Line::number(std::size_t index) const {
   const std::string& text = word(index);
-  if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
+  if (const auto value = to_finite(text)) return *value;
   throw Error(place_, in_quotes(text) + " is not a finite number", "correct it");
 }
 

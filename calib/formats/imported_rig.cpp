@@ -46,7 +46,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& pl
 Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::string& place) {
   const Eigen::Vector3d t_m = unit_m * t;
   if (!all_within(t_m, most_value)) {
-    throw Error(place, fmt::format("a position is beyond {:g} m", most_value),
+    throw Error(place, fmt::format("a position is not finite, or beyond {:g} m", most_value),
                 "correct it, or the unit of length");
   }
   return t_m;

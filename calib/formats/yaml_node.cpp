@@ -78,7 +78,7 @@ std::string YamlNode::text() const {
 double YamlNode::number() const {
   if (!is_scalar()) throw Error(place(), "is not a number", "");
   const std::string& scalar = value_->text;
-  if (const auto value = to_real(scalar); value && std::isfinite(*value)) return *value;
+  if (const auto value = to_finite(scalar)) return *value;
   throw Error(place(), in_quotes(scalar) + " is not a finite number", "correct it");
 }
 

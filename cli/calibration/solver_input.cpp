@@ -3,7 +3,6 @@
 #include "cli/calibration/solver_input.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstddef>
 #include <sstream>
 
@@ -22,7 +21,7 @@ namespace vernier::cli {
 namespace {
 
 double number(const std::string& text, const std::string& option) {
-  if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
+  if (const auto value = to_finite(text)) return *value;
   throw Error(option, in_quotes(text) + " is not a finite number", "use the form left.ax=1");
 }
 

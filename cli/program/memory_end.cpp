@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <typeinfo>
 
 #include "calib/base/unfinished_work.h"
 #include "cli/program/namespaces.h"
@@ -26,7 +27,11 @@ void write_line(const char* text) noexcept {
 }
 
 [[noreturn]] void end_without_memory() noexcept {
-  abandon_unfinished_work();
+  thread_local bool ending = false;  // what fails for want of memory here would come back
+  if (!ending) {
+    ending = true;
+    abandon_unfinished_work();
+  }
   write_line("vernier: ");
   write_line(out_of_memory);
   write_line("\n");
@@ -49,8 +54,10 @@ void write_line(const char* text) noexcept {
   std::abort();
 }
 
-/// How oneTBB says that it cannot start a thread ("pthread_create has failed: …").
-bool is_of_tbb(std::string_view what) noexcept {
+/// How oneTBB says that it cannot start a thread: "pthread_create has failed: …".
+bool is_of_tbb(const std::exception& fault) noexcept {
+  if (typeid(fault) != typeid(std::runtime_error)) return false;
+  const std::string_view what = fault.what();
   return what.starts_with("pthread_") &&
          (what.ends_with(std::strerror(EAGAIN)) || what.ends_with(std::strerror(ENOMEM)));
 }
@@ -68,7 +75,7 @@ bool is_out_of_memory(const std::exception& fault) noexcept {
            of_system->code() == std::errc::not_enough_memory;
   }
   return dynamic_cast<const std::bad_alloc*>(&fault) ||
-         dynamic_cast<const std::length_error*>(&fault) || is_of_tbb(fault.what());
+         dynamic_cast<const std::length_error*>(&fault) || is_of_tbb(fault);
 }
 
 void watch_memory() noexcept { std::set_terminate(on_terminate); }

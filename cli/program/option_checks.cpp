@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -22,12 +21,6 @@
 namespace vernier::cli {
 
 namespace {
-
-/// An option's number if it is one and finite.
-std::optional<double> real_option(const std::string& text) {
-  const auto value = to_real(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 template <class Whole>
 std::string whole_number(const std::string& text, const std::string& kind) {
@@ -50,17 +43,17 @@ std::string whole_number(const std::string& text, const std::string& kind) {
 }  // namespace
 
 std::string finite_and_not_negative(const std::string& text) {
-  const auto value = real_option(text);
+  const auto value = to_finite(text);
   return value && *value >= 0 ? "" : in_quotes(text) + " is not a finite number of 0 or more";
 }
 
 std::string finite_and_positive(const std::string& text) {
-  const auto value = real_option(text);
+  const auto value = to_finite(text);
   return value && *value > 0 ? "" : in_quotes(text) + " is not a finite number above 0";
 }
 
 std::string finite(const std::string& text) {
-  return real_option(text) ? "" : in_quotes(text) + " is not a finite number";
+  return to_finite(text) ? "" : in_quotes(text) + " is not a finite number";
 }
 
 std::string png_name(const std::string& text) {

@@ -58,8 +58,8 @@ SweepLayout layout_of(const StudyResults& results) {
   const bool designed = values.contains("design");
   for (const std::string& key : keys) {
     const auto& of = values[key];
-    if (designed ||
-        !std::all_of(of.begin(), of.end(), [](const auto& v) { return to_real(v).has_value(); })) {
+    if (designed || !std::all_of(of.begin(), of.end(),
+                                 [](const auto& v) { return to_finite(v).has_value(); })) {
       continue;
     }
     if (layout.x.empty() || of.size() > values[layout.x].size()) layout.x = key;
@@ -143,7 +143,7 @@ class FigureMaker {
     std::vector<FigurePoint> points;
     for (const std::size_t i : cells) {
       points.push_back(quantity.of(summaries_[i]));
-      points.back().x = to_real(swept_value(cells_[i].cell, layout_.x)).value_or(no_figure);
+      points.back().x = to_finite(swept_value(cells_[i].cell, layout_.x)).value_or(no_figure);
     }
     std::stable_sort(points.begin(), points.end(),
                      [](const FigurePoint& a, const FigurePoint& b) { return a.x < b.x; });

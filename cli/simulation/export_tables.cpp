@@ -69,7 +69,7 @@ class SettingColumns {
       for (const StudyCell& cell : study.file.cells) setting.values.push_back(value_of(cell, key));
       setting.is_number =
           std::all_of(setting.values.begin(), setting.values.end(), [](const std::string& value) {
-            return value.empty() || (!is_beyond_double(value) && to_real(value).has_value());
+            return value.empty() || (!is_beyond_double(value) && to_finite(value).has_value());
           });
       setting.characters = longest(setting.values);
     }
@@ -80,7 +80,7 @@ class SettingColumns {
       const Setting& setting = settings_[k];
       const std::string& value = setting.values[cell];
       if (setting.is_number) {
-        row.add(keys_[k], ColumnKind::real, to_real(value).value_or(no_number));
+        row.add(keys_[k], ColumnKind::real, to_finite(value).value_or(no_number));
       } else {
         row.text(keys_[k], value, setting.characters);
       }

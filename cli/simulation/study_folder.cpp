@@ -121,7 +121,7 @@ bool is_beyond_double(const std::string& text) {
 Json setting_json(const std::string& text) {
   if (text == "true" || text == "false") return text == "true";
   if (is_beyond_double(text)) return *to_whole(text);
-  const std::optional<double> value = to_real(text);
+  const std::optional<double> value = to_finite(text);
   return value ? Json(*value) : Json(text);
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "localise/join/line_association.h"
@@ -38,11 +39,9 @@ void check(const JoinOptions& o) {
 void check(const SightedSegment& s, const Pose& T_world_camera, std::size_t view, std::size_t i) {
   const std::string place = fmt::format("segment {} of view {}", i, view);
   constexpr double most_m = 1e4;
-  const auto inside = [&](const Eigen::Vector3d& p) {
-    return (p.array().abs() <= most_m).all();  // false for nan
-  };
-  if (!inside(s.a_m) || !inside(s.b_m) || !inside(T_world_camera.t) ||
-      !T_world_camera.R.allFinite()) {
+  if (!vernier::internal::all_within(s.a_m, most_m) ||
+      !vernier::internal::all_within(s.b_m, most_m) ||
+      !vernier::internal::all_within(T_world_camera.t, most_m) || !T_world_camera.R.allFinite()) {
     throw Error(place, "is not within 10 km, or its view's pose is not", "correct it");
   }
   if (!((s.b_m - s.a_m).norm() > 1e-6)) {

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "calib/base/file_in_progress.h"
 #include "calib/error.h"
 #include "calib/rig.h"
@@ -143,14 +144,13 @@ void check(const MapNode& node, std::size_t index) {
                beyond(node.view.mount.pitch_rad, most_metres) ||
                node.view.lines.size() > most_lines || node.view.image_lines.size() > most_lines;
   for (const PlaceLine& line : node.view.lines) {
-    wrong = wrong || beyond(line.a_m.cwiseAbs().maxCoeff(), most_metres) ||
-            beyond(line.b_m.cwiseAbs().maxCoeff(), most_metres) ||
-            beyond(line.sigma_m, most_metres) || !line.a_m.allFinite() || !line.b_m.allFinite();
+    wrong = wrong || !vernier::internal::all_within(line.a_m, most_metres) ||
+            !vernier::internal::all_within(line.b_m, most_metres) ||
+            beyond(line.sigma_m, most_metres);
   }
   for (const stereo::ImageSegment& line : node.view.image_lines) {
-    wrong = wrong || !line.a_px.allFinite() || !line.b_px.allFinite() ||
-            beyond(line.a_px.cwiseAbs().maxCoeff(), most_pixels) ||
-            beyond(line.b_px.cwiseAbs().maxCoeff(), most_pixels);
+    wrong = wrong || !vernier::internal::all_within(line.a_px, most_pixels) ||
+            !vernier::internal::all_within(line.b_px, most_pixels);
   }
   if (wrong || !writable(node.view.corners)) {
     throw Error("map node " + std::to_string(index),

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/base/joined_numbers.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
@@ -27,8 +28,9 @@ namespace {
 constexpr double furthest_m = 1e9;
 
 void check_position(const Eigen::Vector3d& t, const std::string& place) {
-  if (t.cwiseAbs().maxCoeff() <= furthest_m) return;
-  throw Error(place, fmt::format("a position is beyond {:g} m", furthest_m), "give metres");
+  if (vernier::internal::all_within(t, furthest_m)) return;
+  throw Error(place, fmt::format("a position is not finite, or beyond {:g} m", furthest_m),
+              "give metres");
 }
 
 Pose pose_of_tum(const std::vector<double>& v, const std::string& place) {

@@ -215,8 +215,8 @@ std::optional<std::vector<Pose>> by_time(const CameraPoses& poses,
 std::optional<double> time_of_name(const std::string& stem) {
   constexpr std::size_t digits_of_nanoseconds = 16;
   if (stem.empty() || !is_digit(stem[0])) return {};
-  const std::optional<double> value = to_real(stem);
-  if (!value || !std::isfinite(*value)) return {};
+  const std::optional<double> value = to_finite(stem);
+  if (!value) return {};
   const bool whole = stem.find_first_not_of("0123456789") == std::string::npos;
   if (!whole) return *value;
   return stem.size() >= digits_of_nanoseconds ? std::optional(nanoseconds * *value) : std::nullopt;

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib/base/all_within.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -177,7 +178,7 @@ PlaceView level_view(const Camera& camera,
   // what a file of views takes for pixels
   const double most_px = 2.0 * camera.size_px.maxCoeff();
   const auto far_off = [&](const ImageSegment& s) {
-    return std::max(s.a_px.cwiseAbs().maxCoeff(), s.b_px.cwiseAbs().maxCoeff()) > most_px;
+    return !all_within(s.a_px, most_px) || !all_within(s.b_px, most_px);
   };
   std::erase_if(view.image_lines, far_off);
   std::erase_if(view.monocular_lines, far_off);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "calib/error.h"
 #include "sim/import/axes_and_unit.h"
 #include "sim/import/convex_faces.h"
@@ -44,7 +45,7 @@ void check(const Mesh& mesh, const std::string& place) {
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3d& v = mesh.vertices[i];
-    if (v.allFinite() && v.cwiseAbs().maxCoeff() <= largest_in_file) continue;
+    if (vernier::internal::all_within(v, largest_in_file)) continue;
     throw Error(place,
                 fmt::format("vertex {} is {}", i,
                             v.allFinite() ? "further than 1e9 units away" : "not finite"),
@@ -179,7 +180,7 @@ ImportedWorld import_world(const Mesh& file,
   const double lift = origin.z();
   for (Eigen::Vector3d& v : building.vertices) {
     v -= origin;
-    if (v.cwiseAbs().maxCoeff() <= largest_coordinate_m) continue;
+    if (vernier::internal::all_within(v, largest_coordinate_m)) continue;
     throw Error(place,
                 fmt::format("is larger than {:g} km with a unit of {:g} m",
                             largest_coordinate_m / 1000, report.axes.unit_m),

@@ -241,10 +241,12 @@ function inspect() {
 /** Runs in the page: text too faint on its ground (below 4.5 to 1), and sections without height. */
 function inspect_medium() {
   const channels = (colour) => (colour.match(/[\d.]+/g) ?? []).map(Number);
-  const luminance = ([r, g, b]) => [r, g, b].map((v) => v / 255)
+  const luminance = ([r = NaN, g = NaN, b = NaN]) => [r, g, b].map((v) => v / 255)
     .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
     .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
   const ground = (element) => {
+    const bar = element.closest(".bars .point")?.querySelector("path");
+    if (bar) return luminance(channels(getComputedStyle(bar).fill));
     for (let at = element; at; at = at.parentElement) {
       const colour = channels(getComputedStyle(at).backgroundColor);
       if (colour.length === 3 || colour[3] === 1) return luminance(colour);
@@ -257,7 +259,7 @@ function inspect_medium() {
       const style = getComputedStyle(one);
       const text = luminance(channels(one instanceof SVGElement ? style.fill : style.color));
       const [low, high] = [text, ground(one)].sort((a, b) => a - b);
-      return (high + 0.05) / (low + 0.05) < 4.5;
+      return !((high + 0.05) / (low + 0.05) >= 4.5);  // also what is no colour
     });
   return {
     faint: faint.length && `${faint.length} texts, as "${faint[0].textContent.trim().slice(0, 40)}"`,
@@ -274,8 +276,12 @@ async function faults_of_media(page, picture) {
   for (const [name, media] of [["light", { colorScheme: "light" }], ["dark", { colorScheme: "dark" }],
     ["print", { media: "print", colorScheme: "light" }]]) {
     await page.emulateMedia(media);
-    await page.waitForTimeout(300);
-    const seen = await page.evaluate(inspect_medium);
+    let seen;
+    for (let waits = 0; waits < 40; waits += 1) {  // until the plots are drawn again
+      await page.waitForTimeout(250);
+      seen = await page.evaluate(inspect_medium);
+      if (!seen.faint) break;
+    }
     if (seen.faint) faults.push(`${name}: too faint: ${seen.faint}`);
     if ((name === "dark") !== (seen.ground < 0.1)) faults.push(`${name}: its ground is ${seen.ground}`);
     if (seen.hidden.length) faults.push(`${name}: sections without height: ${seen.hidden}`);
@@ -306,7 +312,7 @@ async function check_page(browser, one, widths, screenshots) {
     const seen = await page.evaluate(inspect);
     faults.push(...faults_of(one, seen));
     if (one.plotly) faults.push(...await choose_another_cell(page));
-    if (width === widths[0]) {
+    if (one.media && width > 1000) {
       faults.push(...await faults_of_media(page, screenshots
         && ((name) => path.join(screenshots, `${path.basename(file, ".html")}-${width}-${name}.png`))));
     }
@@ -382,7 +388,8 @@ function arguments_of(words) {
 
 /** Pages from the program have plots where they carry plotly. */
 function given_page(file) {
-  return { file, plotly: fs.readFileSync(file, "utf8").includes('<script id="plotly">') };
+  return { file, media: true,
+    plotly: fs.readFileSync(file, "utf8").includes('<script id="plotly">') };
 }
 
 async function main() {

@@ -5,6 +5,7 @@ import { DASH, count, counted, fixed, percent, significant } from "./format.js";
 import { in_percent, is_number, times } from "./numbers.js";
 import { is_bound } from "./parameters.js";
 import { COLOUR, axis, figure, log_axis } from "./plot.js";
+import { ink_on } from "./theme.js";
 
 /** Cross-validation of lens model and covariance on held-out views. */
 export function proof_content(rig) {
@@ -124,7 +125,7 @@ function coverage_bars(rows, by) {
   const bars = ({ name, suffix, color }) => ({ type: "bar", name, x: rows.map((row) => row.what),
     y: rows.map((row) => in_percent(row[`coverage_${suffix}`])), marker: { color },
     text: rows.map((row) => percent(row[`coverage_${suffix}`], 0)), textposition: "inside",
-    insidetextfont: { color: "#fff" }, hovertemplate: `${name}: %{y:.1f} %<extra></extra>` });
+    insidetextfont: { color: ink_on(color) }, hovertemplate: `${name}: %{y:.1f} %<extra></extra>` });
   return figure("", "Fraction of lengths inside their 95 % interval. The line is at 95 %: the"
     + " intervals are too narrow below it, too wide above it.",
     "Coverage of 95 % intervals, as in the table.", 300,

@@ -16,6 +16,13 @@ export const series_colour = (i) => {
   return [blue, red, green, pink, amber, sky][i % 6];
 };
 
+/** Ink for text on a colour: dark where white would have less contrast (WCAG 2). */
+export function ink_on(colour) {
+  const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16) / 255)
+    .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b > 0.18 ? "#10161d" : "#ffffff";
+}
+
 const wish = window.matchMedia?.("(prefers-color-scheme: dark)");
 
 /** As the reader wishes, light on paper. */

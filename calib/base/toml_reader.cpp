@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 
 #include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
 #include "calib/base/toml_grammar.h"
 #include "calib/error.h"
 
@@ -27,6 +29,14 @@ std::string_view trimmed_line(std::string_view text, std::size_t number) {
   return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
 }
 
+/// Whether toml++ could not read a number that is one: its stream swallows std::bad_alloc.
+bool lacks_memory(std::string_view description) {
+  constexpr std::string_view begin = "Error while parsing floating-point: '";
+  if (!description.starts_with(begin)) return false;
+  description.remove_prefix(begin.size());
+  return to_real(description.substr(0, description.find('\''))).has_value();
+}
+
 }  // namespace
 
 // After check_toml only definitions that repeat or contradict others are left to fail, and the
@@ -37,6 +47,7 @@ toml::table parse_toml(std::string_view text, const std::string& place) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
+    if (lacks_memory(error.description())) throw std::bad_alloc();
     const toml::source_index line = error.source().begin.line;
     const std::string named = place + ":" + std::to_string(line);
     if (error.description().find("existing") == std::string_view::npos) {

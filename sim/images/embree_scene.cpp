@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 
 #include "calib/error.h"
@@ -18,11 +19,11 @@ namespace {
 /// One device for the process: what it costs to make one is 1 ms, and it starts no threads.
 RTCDevice device() {
   static RTCDevice shared = rtcNewDevice("threads=1,start_threads=0");
-  if (shared == nullptr) {
-    throw Error("images", "cannot be rendered: Embree does not start on this processor",
-                "use a processor with SSE2");
-  }
-  return shared;
+  if (shared != nullptr) return shared;
+  // Embree tells any failure of its own to start as one of no kind; memory is the usual one.
+  if (rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU) throw std::bad_alloc();
+  throw Error("images", "cannot be rendered: Embree does not start on this processor",
+              "use a processor with SSE2");
 }
 
 /// The context of a query for crossings; the filter finds it behind Embree's own.

@@ -201,10 +201,14 @@ def check(build, top, tolerance=0, allow_cached=False):
     print(words)
     if offenders or missing:
         return 1
+    # Batches count neither as measured nor as missing, those of targets that are not built included.
+    single = sum(not (BATCH.search(words[words.index("-c") + 1]) or
+                      (unit in costs and unit not in measured))
+                 for unit, (words, _) in units.items())
     known = len(measured) + (len(cached) if allow_cached else 0)
-    if not known or known < ENOUGH * (len(units) - batches):
+    if not known or known < ENOUGH * single:
         raise Unusable(f"too few units were measured: {len(measured)} of "
-                       f"{len(units) - batches}, {ENOUGH:.0%} are needed; build everything, with "
+                       f"{single}, {ENOUGH:.0%} are needed; build everything, with "
                        "CCACHE_RECACHE=1 if units came from the compiler cache")
     if allow_cached and cached:
         print(f"not measured: {len(cached)} units came from the compiler cache")

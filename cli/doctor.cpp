@@ -13,7 +13,9 @@
 #include <thread>
 #include <vector>
 
+#include "calib/base/image_file.h"
 #include "calib/base/instruction_set.h"
+#include "calib/error.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_uncertainty.h"
 #include "cli/program/session.h"
@@ -74,6 +76,16 @@ Finding image_finding() {
   }
   return {"real chessboard pairs",
           "missing: install Debian's opencv-doc, or unpack it into build/opencv-doc", false};
+}
+
+/// They are loaded at the first image, which may be hours into a run.
+Finding codecs_finding() {
+  try {
+    decode_image(vernier::internal::png_of(cv::Mat::zeros(1, 1, CV_8U)), 0, "");
+    return {"OpenCV, image codecs", "found"};
+  } catch (const Error& error) {
+    return {"OpenCV, image codecs", error.what(), false};
+  }
 }
 
 Finding assimp_finding() {
@@ -163,6 +175,7 @@ std::vector<Finding> findings() {
       page_finding(),
       plots_finding(),
       library_finding(),
+      codecs_finding(),
       assimp_finding(),
       embree_finding(),
       mpi_finding(),

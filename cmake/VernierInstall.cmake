@@ -15,6 +15,7 @@ function(vernier_dependencies module result)
   # An installed static library asks for what it links privately as $<LINK_ONLY:package>.
   list(TRANSFORM needs REPLACE "^\\$<LINK_ONLY:(.+)>$" "\\1")
   list(FILTER needs EXCLUDE REGEX "^vernier::")  # brought by the component itself
+  list(REMOVE_ITEM needs ${CMAKE_DL_LIBS})        # of the C library
   set(lines "")
   foreach(package IN ITEMS "Eigen3::|Eigen3 3.4" "Ceres::|Ceres 2.1" "fmt::|fmt"
                            "Highway::|Highway" "LibYAML::|LibYAML" "TBB::|TBB" "SQLite::|SQLite3"

@@ -7,12 +7,12 @@
 #include <charconv>
 #include <cstddef>
 #include <new>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/image_codecs.h"
 #include "calib/base/image_damage.h"
 #include "calib/base/image_size.h"
 #include "calib/base/jpeg_rewriting.h"
@@ -105,7 +105,7 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
   if (!bytes.empty()) {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     try {
-      pixels = cv::imdecode(buffer, flags);
+      pixels = decode_by_imgcodecs(buffer, flags);
     } catch (const cv::Exception& fault) {  // others are reported below
       if (fault.code == cv::Error::StsNoMem) throw std::bad_alloc();
     }
@@ -114,6 +114,12 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
     throw Error(file.string(), no_image, "check the file");
   }
   return pixels;
+}
+
+std::string png_of(const cv::Mat& pixels, const std::vector<int>& options) {
+  std::vector<unsigned char> bytes;
+  encode_by_imgcodecs(".png", pixels, bytes, options);
+  return {bytes.begin(), bytes.end()};
 }
 
 bool is_png(std::string_view bytes) { return bytes.substr(0, 8) == png_signature; }

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vernier::internal {
 
@@ -16,6 +17,9 @@ std::string read_image_bytes(const std::filesystem::path& file);
 
 /// The decoded pixels, with the flags of cv::imread. Throws Error(file) if it is not an image.
 cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::path& file);
+
+/// The bytes of a PNG file of 8 or 16 bits, with the options of cv::imwrite.
+std::string png_of(const cv::Mat& pixels, const std::vector<int>& options = {});
 
 bool is_png(std::string_view bytes);
 

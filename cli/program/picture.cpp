@@ -19,9 +19,7 @@ cv::Scalar blue_to_red(double share) {
 }
 
 std::string png_of(const cv::Mat& picture) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  return {png.begin(), png.end()};
+  return vernier::internal::png_of(picture, {cv::IMWRITE_PNG_COMPRESSION, 9});
 }
 
 }  // namespace vernier::cli

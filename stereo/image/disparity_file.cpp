@@ -155,9 +155,7 @@ std::string png_bytes(const DisparityMap& map, const std::string& place) {
       pixels.at<ushort>(y, x) = static_cast<ushort>(std::max(value, 1.0));
     }
   }
-  std::vector<uchar> bytes;
-  cv::imencode(".png", pixels, bytes);
-  return {bytes.begin(), bytes.end()};
+  return internal::png_of(pixels);
 }
 
 }  // namespace

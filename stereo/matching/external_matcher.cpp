@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -113,9 +112,7 @@ std::vector<std::string> filled(const Command& command,
 }
 
 void write_image(const TemporaryFolder& folder, const std::string& name, const GreyLevels& grey) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", bytes_of(grey), bytes);
-  folder.write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  folder.write(name, internal::png_of(bytes_of(grey)));
 }
 
 /// Throws Error for a program that failed.

@@ -94,6 +94,11 @@ class Trials:
                 for key in [key for key in cell if '_ms' in key]:
                     del cell[key]
             found['status'] = json.dumps(status, sort_keys=True)
+        if call.name == 'tune':  # which computes nothing again
+            words = [*map(str, call.words), '--json']
+            done = subprocess.run([self.program, *words], cwd=folder, capture_output=True, text=True)
+            times = r'"[a-z_0-9]*(_ms|_s)[a-z_0-9]*": ?[-+.e0-9]+'
+            found['status'] = re.sub(times, '', done.stdout) or done.stderr
         return found
 
     def learn(self, call):

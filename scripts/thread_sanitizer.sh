@@ -17,7 +17,9 @@ USAGE
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
-filter='*Thread*:StudyRuns.*:WarpedPair*'
+# All tests that run several threads and do not say so in their names run within these suites.
+filter='*Thread*:StudyRuns.*:StudyRanks.*:WarpedPair*:RaceSearches.*:SuccessCurve.*:SplitHalves.*'
+filter+=':OneAtATime.*:ToldStudies.*Shards*'
 while (($# > 0)); do
   case "$1" in
     --jobs | --filter)

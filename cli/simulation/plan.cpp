@@ -65,8 +65,8 @@ double number_at(const std::string& text, const std::string& option, double& at_
   std::string range = at == std::string::npos ? "" : text.substr(at + 1);
   if (range.ends_with("m")) range.pop_back();
   const auto number = [&](const std::string& word) {
-    const auto found = to_real(word);
-    if (found && *found > 0 && std::isfinite(*found)) return *found;
+    const auto found = to_finite(word);
+    if (found && *found > 0) return *found;
     throw Error(option, in_quotes(text) + " is not such as 0.02 or 0.02@5m, in metres",
                 "give a number above 0, and after an @ the distance");
   };

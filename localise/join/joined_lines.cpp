@@ -47,7 +47,7 @@ void check(const SightedSegment& s, const Pose& T_world_camera, std::size_t view
   if (!((s.b_m - s.a_m).norm() > 1e-6)) {
     throw Error(place, "has no length", "leave it out");
   }
-  const bool finite = s.covariance_m2.allFinite() && s.covariance_m2.cwiseAbs().maxCoeff() < 1e8;
+  const bool finite = vernier::internal::all_within(s.covariance_m2, 1e8);
   const auto skew = [&] { return (s.covariance_m2 - s.covariance_m2.transpose()).norm(); };
   if (!finite || skew() > 1e-6 * s.covariance_m2.norm()) {
     throw Error(place, "has a covariance that is not finite or not symmetric", "correct it");

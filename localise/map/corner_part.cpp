@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/all_within.h"
 #include "localise/map/native_bytes.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -25,9 +26,7 @@ constexpr double largest_px = 1e7;
 constexpr std::size_t counts_bytes = 8, fixed_bytes = 14 * sizeof(double);
 
 bool is_corner(const StereoCorner& corner) {
-  const auto within = [](const auto& x) {
-    return x.allFinite() && x.cwiseAbs().maxCoeff() <= largest_px;
-  };
+  const auto within = [](const auto& x) { return vernier::internal::all_within(x, largest_px); };
   return within(corner.left_px) && within(corner.right_px) && within(corner.covariance_px2) &&
          corner.covariance_px2 == corner.covariance_px2.transpose() &&
          corner.covariance_px2.llt().info() == Eigen::Success && corner.descriptor.allFinite();

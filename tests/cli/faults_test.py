@@ -423,17 +423,29 @@ class Signals(FaultCase):
 
 class Children(FaultCase):
     def test_children_inherit_no_descriptor_and_no_signal(self):
+        """Of every kind of program that a verb starts: they end at once, after a look round."""
+        look = 'sh look.sh'
         (self.folder / 'look.sh').write_text(
             'ls /proc/self/fd > seen; grep -E "SigBlk|SigIgn" /proc/self/status >> seen; exit 1\n')
-        with open(self.folder / 'rig.json') as extra:
-            self.run_in_folder('evaluate', '--left', 'left.pgm', '--right', 'right.pgm', '--truth',
-                               'truth.pgm', '--truth-scale', '4', '--max-disparity', '20', '-q',
-                               '--command', 'sh look.sh {left} {right} {output}.pfm',
-                               pass_fds=[extra.fileno()])
-        seen = (self.folder / 'seen').read_text().split()
-        self.assertEqual(seen[:seen.index('SigBlk:')], ['0', '1', '2', '3'])  # 3: of ls itself
-        usual = (1 << 31) - 1  # the others are glibc's own
-        self.assertEqual([int(word, 16) & usual for word in (seen[-3], seen[-1])], [0, 0])
+        (self.folder / 'own.study.toml').write_text(
+            verb_calls.STUDY + f'[localiser]\nmethod = "program"\ncommand = "{look}"\n')
+        pair = ('--left', 'left.pgm', '--right', 'right.pgm')
+        calls = {
+            'matcher': ('evaluate', *pair, '--truth', 'truth.pgm', '--truth-scale', '4', '--max-disparity',
+                        '20', '-q', '--command', look + ' {left} {right} {output}.pfm'),
+            'localiser': ('localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal',
+                          '--method', 'program', '--command', look),
+            'localiser of a study': ('study', 'own.study.toml', '--threads', '1', '-o', 'own'),
+            'source': ('servo', '--trials', '1', '--source', 'command=' + look),
+            'controller': ('drive', '--pose', '10,7.5,0', '--command', look)}
+        for name, words in calls.items():
+            with self.subTest(name), open(self.folder / 'rig.json') as extra:
+                self.run_in_folder(*words, pass_fds=[extra.fileno()])
+                seen = (self.folder / 'seen').read_text().split()
+                (self.folder / 'seen').unlink()
+                self.assertEqual(seen[:seen.index('SigBlk:')], ['0', '1', '2', '3'])  # 3: of ls itself
+                usual = (1 << 31) - 1  # the others are glibc's own
+                self.assertEqual([int(word, 16) & usual for word in (seen[-3], seen[-1])], [0, 0])
 
 
 class Kills(Case):

@@ -282,13 +282,35 @@ class Images(Case):
         self.assertIn('64x48', done.err)  # it was read: the rig is of another size
 
     def test_libraries_say_nothing_beside_ours(self):
-        self.write('l1.png', png(640, 480, before_pixels=b'x\0\0no profile'))
-        self.write('r1.png', png(640, 480, value=85))
-        done = self.call('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png',
-                         '-o', 'out')
-        self.assertNotIn('libpng', done.err)
-        self.assertNotIn('OpenCV', done.err)
-        self.assertNotIn('iCCP', done.err)
+        """Of any verb that reads images; most refuse these grey ones, once they have read them."""
+        odd = b'x\0\0no profile'
+        for number in (1, 2):
+            self.write(f'l{number}.png', png(640, 480, before_pixels=odd))
+            self.write(f'r{number}.png', png(640, 480, value=85, before_pixels=odd))
+        self.write('truth.png', png(640, 480, value=40, before_pixels=odd))
+        self.write('depth.png', png(640, 480, depth=16, value=9, before_pixels=odd))
+        self.write('K.txt', '500 0 320\n0 500 240\n0 0 1\n')
+        self.write('known.map', verb_calls.map_file(verb_calls.features().splitlines()))
+        pair = ('--left', 'l1.png', '--right', 'r1.png')
+        truth = (*pair, '--truth', 'truth.png', '--truth-scale', '4', '--max-disparity', '20')
+        for call, says in (
+                (('rectify', '--rig', 'nominal', *pair, '-o', 'out'), 'row alignment'),
+                (('detect', *pair, '--board', '9x6', '-o', 'c.vnl'), 'no 9x6 board'),
+                (('calibrate', *pair, '--board', '9x6', '--square-m', '0.1', '-o', 'c.json'), 'no 9x6 board'),
+                (('match', *pair, '--prior', 'nominal', '-o', 'p.csv'), 'no corner'),
+                (('stereo', *pair, '--rectified', '--f-px', '500', '--baseline-m', '0.1', '-o', 'st'), 'no edges'),
+                (('evaluate', *truth, '--matcher', 'edge', '-o', 'ev'), 'no edge'),
+                (('characterise', *truth, '-o', 's.toml'), 'no edge'),
+                (('lines', '--image', 'l1.png', '--depth', 'depth.png', '--rig', 'K.txt', '-o', 'l.jsonl'),
+                 'no reliable line'),
+                (('localise', 'known.map', *pair, '--rig', 'nominal'), 'too few lines'),
+                (('odometry', '--left', 'l?.png', '--right', 'r?.png', '--rig', 'nominal', '-o', 'o.txt'),
+                 'corner')):
+            with self.subTest(call[0]):
+                done = self.call(*call)
+                self.assertIn(says, done.err)  # what is wrong with the images: they were read
+                for word in ('libpng', 'OpenCV', 'iCCP', 'profile'):
+                    self.assertNotIn(word, done.err)
 
 
 class Numbers(Case):

@@ -31,6 +31,7 @@ set(vernier_fuzz_targets
   fuzz/targets/pairs_csv.cpp
   fuzz/targets/place_poses.cpp
   fuzz/targets/python_literal.cpp
+  fuzz/targets/rank_message.cpp
   fuzz/targets/rig_json.cpp
   fuzz/targets/ros_camera_info.cpp
   fuzz/targets/segments_file.cpp

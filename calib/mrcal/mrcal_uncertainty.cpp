@@ -160,7 +160,8 @@ bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProble
   }
   for (std::size_t q = 0; all && q < answer.triangulation.size(); ++q) {
     const std::size_t pairs = problem.triangulation[q].pairs.size();
-    all = answer.triangulation[q].calibration.size() == pairs &&
+    all = answer.triangulation[q].points_m.size() == pairs &&
+          answer.triangulation[q].calibration.size() == pairs &&
           answer.triangulation[q].observation.size() == pairs;
   }
   return all;

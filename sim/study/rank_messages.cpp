@@ -3,6 +3,7 @@
 #include "sim/study/rank_messages.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -10,6 +11,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "calib/error.h"
 #include "sim/study/ceiling.h"
@@ -44,23 +46,46 @@ struct RankTexts {
   RankJson operator()(const End&) const { return RankJson::array({"end"}); }
 };
 
+[[noreturn]] void throw_unreadable() {
+  throw Error("a message between ranks", "cannot be read", "run the same build everywhere");
+}
+
+/// A whole number in its range: nlohmann's conversion would cut others off.
+template <typename Whole>
+Whole whole(const RankJson& json) {
+  if (!json.is_number_integer()) throw_unreadable();
+  const auto number = json.get<std::int64_t>();
+  if (!std::in_range<Whole>(number)) throw_unreadable();
+  return static_cast<Whole>(number);
+}
+
+std::vector<int> whole_numbers(const RankJson& json) {
+  std::vector<int> numbers;
+  for (const RankJson& number : json) numbers.push_back(whole<int>(number));
+  return numbers;
+}
+
+std::array<int, 3> counts(const RankJson& json) {
+  return {whole<int>(json.at(0)), whole<int>(json.at(1)), whole<int>(json.at(2))};
+}
+
 RankMessage parsed(const RankJson& json, const std::string& tail) {
   const auto kind = json.at(0).get<std::string>();
   if (kind == "hello") return Hello{json.at(1), json.at(2), json.at(3)};
   if (kind == "welcome") return Welcome{json.at(1).get<bool>()};
-  if (kind == "ready") return Ready{json.at(1).get<int>()};
+  if (kind == "ready") return Ready{whole<int>(json.at(1))};
   if (kind == "assigned") {
-    return Assigned{json.at(1).get<std::int64_t>(),
-                    {json.at(2).get<int>(), json.at(3).get<int>(), json.at(4)}};
+    return Assigned{whole<std::int64_t>(json.at(1)),
+                    {whole<int>(json.at(2)), whole<int>(json.at(3)), whole_numbers(json.at(4))}};
   }
   if (kind == "computed") {
-    UnitResult result{{json.at(2), json.at(3).get<int>(), json.at(4), tail}, {}};
+    UnitResult result{{json.at(2), whole<int>(json.at(3)), counts(json.at(4)), tail}, {}};
     for (const RankJson& of_query : json.at(5)) {
       result.ceilings.emplace_back(
-          of_query.at(0).get<int>(),
+          whole<int>(of_query.at(0)),
           QueryCeiling{of_query.at(1).get<double>(), of_query.at(2).get<bool>()});
     }
-    return Computed{json.at(1).get<std::int64_t>(), std::move(result)};
+    return Computed{whole<std::int64_t>(json.at(1)), std::move(result)};
   }
   if (kind == "failed") {
     return Failed{json.at(1), json.at(2), json.at(3), json.at(4).get<bool>()};
@@ -88,7 +113,7 @@ RankMessage parse_rank_text(const std::string& text) {
     return parsed(RankJson::parse(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(head)),
                   text.substr(std::min(head + 1, text.size())));
   } catch (const RankJson::exception&) {
-    throw Error("a message between ranks", "cannot be read", "run the same build everywhere");
+    throw_unreadable();
   }
 }
 

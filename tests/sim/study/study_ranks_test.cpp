@@ -310,8 +310,8 @@ TEST(RankMessages, RoundTrip) {
   for (const RankMessage& bare : {RankMessage(Left{}), RankMessage(End{})}) {
     EXPECT_EQ(parse_rank_text(rank_text(bare)).index(), bare.index());
   }
-  for (const char* text :
-       {"", "[", "{}", "[]", "[\"ready\"]", "[\"ready\", \"many\"]", "[\"dance\"]"}) {
+  for (const char* text : {"", "[", "{}", "[]", "[\"ready\"]", "[\"ready\", \"many\"]",
+                           "[\"ready\", 1e300]", "[\"ready\", 3000000000]", "[\"dance\"]"}) {
     EXPECT_THROW(parse_rank_text(text), Error) << text;
   }
 }

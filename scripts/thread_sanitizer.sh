@@ -17,9 +17,9 @@ USAGE
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
-# All tests that run several threads and do not say so in their names run within these suites.
+# Tests that run several threads and do not say so in their names are in these suites.
 filter='*Thread*:StudyRuns.*:StudyRanks.*:WarpedPair*:RaceSearches.*:SuccessCurve.*:SplitHalves.*'
-filter+=':OneAtATime.*:ToldStudies.*Shards*'
+filter+=':OneAtATime.*:ToldStudies.*'
 while (($# > 0)); do
   case "$1" in
     --jobs | --filter)

@@ -19,22 +19,31 @@ using Imencode = bool(const std::string&,
                       std::vector<unsigned char>&,
                       const std::vector<int>&);
 
-/// Throws std::bad_alloc if the libraries would not fit into what memory the process may have. Some
-/// of them end the process where their own start fails, and what is thrown there cannot leave
-/// dlopen.
-void look_for_room() {
-  constexpr std::size_t room = std::size_t{256} << 20;  // they map 150 MB on Debian 12
-  void* const place = mmap(nullptr, room, PROT_READ | PROT_WRITE,
-                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+void look_for(std::size_t bytes, int protection) {
+  void* const place = mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (place == MAP_FAILED) throw std::bad_alloc();
-  munmap(place, room);
+  munmap(place, bytes);
+}
+
+/// Throws std::bad_alloc if the libraries would not fit into what memory the process may have: some
+/// of them end the process where their own start fails, and what is thrown there cannot leave
+/// dlopen. On Debian 12 they take 150 to 190 MB of addresses, of which 11 MB are written.
+void look_for_room() {
+  constexpr std::size_t mega = std::size_t{1} << 20;
+  look_for(256 * mega, PROT_NONE);
+  look_for(32 * mega, PROT_READ | PROT_WRITE);
 }
 
 [[noreturn]] void throw_not_loaded() {
-  const char* const why = dlerror();
-  throw Error(std::string("OpenCV's library ") + imgcodecs_library.name,
-              std::string("cannot be loaded: ") + (why ? why : "unknown reason"),
-              "install OpenCV's image codecs (Debian: libopencv-imgcodecs-dev)");
+  const char* const text = dlerror();
+  const std::string why = text ? text : "unknown reason";
+  const auto says = [&](const char* part) { return why.find(part) != std::string::npos; };
+  // Another thread may have taken the room meanwhile.
+  if (says("failed to map") || says("annot allocate") || says("annot map")) throw std::bad_alloc();
+  const bool descriptors = says("oo many open files") || says("Error 24") || says("Error 23");
+  throw Error(std::string("OpenCV's library ") + imgcodecs_library.name, "cannot be loaded: " + why,
+              descriptors ? "allow more open files (ulimit -n)"
+                          : "install OpenCV's image codecs (Debian: libopencv-imgcodecs-dev)");
 }
 
 struct Codecs {

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <vector>
+
+#include "calib/base/image_file.h"
 
 namespace vernier::cli {
 

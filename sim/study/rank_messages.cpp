@@ -53,13 +53,17 @@ struct RankTexts {
 /// A whole number in its range: nlohmann's conversion would cut others off.
 template <typename Whole>
 Whole whole(const RankJson& json) {
+  const auto in_range = [](auto number) {
+    if (!std::in_range<Whole>(number)) throw_unreadable();
+    return static_cast<Whole>(number);
+  };
   if (!json.is_number_integer()) throw_unreadable();
-  const auto number = json.get<std::int64_t>();
-  if (!std::in_range<Whole>(number)) throw_unreadable();
-  return static_cast<Whole>(number);
+  return json.is_number_unsigned() ? in_range(json.get<std::uint64_t>())
+                                   : in_range(json.get<std::int64_t>());
 }
 
 std::vector<int> whole_numbers(const RankJson& json) {
+  if (!json.is_array()) throw_unreadable();  // of other values a loop has one turn, or none
   std::vector<int> numbers;
   for (const RankJson& number : json) numbers.push_back(whole<int>(number));
   return numbers;

@@ -423,7 +423,8 @@ class Signals(FaultCase):
 
 class Children(FaultCase):
     def test_children_inherit_no_descriptor_and_no_signal(self):
-        """Of every kind of program that a verb starts: they end at once, after a look round."""
+        """Of every kind of program of the user's that a verb starts: they end at once, after a look
+        round. (The reader of meshes is the program itself, and mrcal's script is Vernier's.)"""
         look = 'sh look.sh'
         (self.folder / 'look.sh').write_text(
             'ls /proc/self/fd > seen; grep -E "SigBlk|SigIgn" /proc/self/status >> seen; exit 1\n')
@@ -446,6 +447,29 @@ class Children(FaultCase):
                 self.assertEqual(seen[:seen.index('SigBlk:')], ['0', '1', '2', '3'])  # 3: of ls itself
                 usual = (1 << 31) - 1  # the others are glibc's own
                 self.assertEqual([int(word, 16) & usual for word in (seen[-3], seen[-1])], [0, 0])
+
+
+class Codecs(FaultCase):
+    def test_image_codecs_that_cannot_be_loaded(self):
+        """Empty files in their place: what reads no image works, the others say so."""
+        (self.folder / 'empty').mkdir()
+        names = {file.name for folder in ('/usr/lib', '/usr/local/lib', '/lib64')
+                 for file in pathlib.Path(folder).rglob('libopencv_imgcodecs.so.*')}
+        for name in names:
+            (self.folder / 'empty' / name).touch()
+        env = dict(os.environ, LD_LIBRARY_PATH=str(self.folder / 'empty'))
+        if not names or self.run_in_folder('--version', env=env).returncode != 0:
+            self.skipTest('the image codecs are linked, or are in an unusual place')
+        for words in (('detect', '--left', cli_test.IMAGES / 'left01.jpg', '--board', '9x6', '-o', 'c.vnl'),
+                      ('stereo', '--rig', 'rig.json', '--left', 'left.pgm', '--right', 'right.pgm', '-o', 'out')):
+            with self.subTest(words[0]):
+                done = self.run_in_folder(*words, env=env)
+                self.fails_in_one_line(done, 'libopencv_imgcodecs', 'cannot be loaded', 'install')
+        self.assertEqual(self.made(), {'empty'} | {f'empty/{name}' for name in names})
+        found = json.loads(self.run_in_folder('doctor', '--json', env=env).stdout)['findings']
+        codecs = next(one for one in found if 'codecs' in one['what'])
+        self.assertFalse(codecs['found'])
+        self.assertIn('cannot be loaded', codecs['value'])
 
 
 class Kills(Case):

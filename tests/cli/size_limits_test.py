@@ -393,12 +393,35 @@ class Memory(Case):
                         output.unlink(missing_ok=True)
         self.assertGreater(len(ran_out), 8, ran_out)
 
-    def least_virtual_mb(self):
-        """What the program needs to start at all."""
+    def test_images_once_their_codecs_are_loaded(self):
+        """They are loaded where 256 MB are left, of which they take the larger part: larger images."""
+        for side, value in (('left', 0), ('right', 85)):
+            self.write(side + '1.png', png(11000, 11000, value=value))
+        self.write('small1.png', png(64, 64))
+        loaded_mb = self.least_virtual_mb('detect', '--left', 'small1.png', '--board', '9x6', '-o', 'c.vnl',
+                                          code=2, says='no 9x6 board')
+        pair = ('--left', 'left1.png', '--right', 'right1.png')
+        ran_out = set()
+        for more_mb in (0, 40, 160):
+            for call in (('stereo', '--rectified', '--f-px', '500', '--baseline-m', '0.1', *pair, '-o', 'st'),
+                         ('detect', '--left', 'left1.png', '--board', '9x6', '-o', 'c.vnl'),
+                         ('rectify', '--rig', 'nominal', *pair, '-o', 'r'),
+                         ('match', *pair, '--prior', 'nominal', '-o', 'p.csv')):
+                done = self.call(*call, virtual_mb=loaded_mb + more_mb)
+                said = f'{call[0]} with {loaded_mb + more_mb} MB: {done.code} {done.err[-300:]}'
+                self.assertEqual(done.code, 2, said)
+                self.assertTrue(done.err.splitlines()[-1].startswith('vernier: '), said)
+                if 'out of memory' in done.err:
+                    ran_out.add(call[0])
+        self.assertGreater(len(ran_out), 2, ran_out)
+
+    def least_virtual_mb(self, *call, code=0, says=''):
+        """What a call needs to end so; of none: what the program needs to start at all."""
         too_few, enough = 50, 4000
         while enough - too_few > 1:
             middle = (too_few + enough) // 2
-            if self.call('--version', virtual_mb=middle).code == 0:
+            done = self.call(*(call or ('--version',)), virtual_mb=middle)
+            if done.code == code and says in done.err:
                 enough = middle
             else:
                 too_few = middle

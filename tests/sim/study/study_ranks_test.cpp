@@ -310,8 +310,10 @@ TEST(RankMessages, RoundTrip) {
   for (const RankMessage& bare : {RankMessage(Left{}), RankMessage(End{})}) {
     EXPECT_EQ(parse_rank_text(rank_text(bare)).index(), bare.index());
   }
-  for (const char* text : {"", "[", "{}", "[]", "[\"ready\"]", "[\"ready\", \"many\"]",
-                           "[\"ready\", 1e300]", "[\"ready\", 3000000000]", "[\"dance\"]"}) {
+  for (const char* text :
+       {"", "[", "{}", "[]", "[\"ready\"]", "[\"ready\", \"many\"]", "[\"ready\", 1e300]",
+        "[\"ready\", 3000000000]", "[\"ready\", 18446744073709551615]",
+        "[\"assigned\", 1, 2, 0, 7]", "[\"assigned\", 1, 2, 0, null]", "[\"dance\"]"}) {
     EXPECT_THROW(parse_rank_text(text), Error) << text;
   }
 }

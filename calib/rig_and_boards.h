@@ -36,7 +36,7 @@ struct RigAndBoards {
   std::vector<int> frames;          ///< ascending
   std::vector<Pose> T_first_board;  ///< one per frame
   Eigen::MatrixXd rig_covariance;
-  std::shared_ptr<const internal::ConditionalBoardPoses> given_rig;
+  std::shared_ptr<const vernier::internal::ConditionalBoardPoses> given_rig;
   double board_sigma_px = 0;
 };
 

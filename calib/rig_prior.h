@@ -27,7 +27,7 @@ class StableCoordinates;
 struct RigPrior {
   Rig mean;
   Eigen::MatrixXd information;  ///< P, parameters x parameters; zero for unknown parameters
-  std::shared_ptr<const internal::StableCoordinates> coordinates;  ///< null: the tangent
+  std::shared_ptr<const vernier::internal::StableCoordinates> coordinates;  ///< null: the tangent
 };
 
 /// A prior from another source: `covariance` is over the parameters it names, any subset of those

@@ -45,7 +45,7 @@ class RigSampler {
   Rig sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
 
   /// The rig at a deviation.
-  internal::MovedRig moved(const Eigen::VectorXd& deviation) const;
+  vernier::internal::MovedRig moved(const Eigen::VectorXd& deviation) const;
 
   const ScaledDecomposition& decomposition() const { return decomposition_; }
   const Rig& mean() const { return mean_; }
@@ -54,7 +54,7 @@ class RigSampler {
   std::string place_;
   Rig mean_;
   ScaledDecomposition decomposition_;
-  std::shared_ptr<const internal::StableCoordinates> coordinates_;
+  std::shared_ptr<const vernier::internal::StableCoordinates> coordinates_;
 };
 
 }  // namespace vernier

@@ -68,7 +68,7 @@ class QueryPlaces {
   const Visibility& visibility_;
   QueryProtocol protocol_;
   double eye_height_m_;
-  std::unique_ptr<const internal::FreeFloor> floor_;  // of QueryProtocol::free
+  std::unique_ptr<const vernier::sim::internal::FreeFloor> floor_;  // of QueryProtocol::free
 };
 
 /// QueryPlaces::draw, for a single query.

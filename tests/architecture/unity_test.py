@@ -19,6 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = ("calib", "stereo", "localise", "sim", "cli")
+TESTS = ("tests/calib", "tests/stereo", "tests/localise", "tests/sim", "fuzz")
 NAMESPACE = re.compile(r"namespace ([\w:]+) \{")
 TYPE = re.compile(r"(?:struct|class|enum class|enum) (\w+)\b(?!;)")
 CONSTANT = re.compile(r"(?:constexpr|const|inline constexpr|static const|static|thread_local|auto) "
@@ -31,16 +32,19 @@ QUALIFIER = re.compile(r"\b(?:\w+::)+")
 FUNCTION = re.compile(r"(?!using|return|template)[\w:<>,&* ]+?\b(\w+)\((.*)")
 
 
-def parameters(lines):
-    """The types of a function's parameters; `lines` begin behind the opening bracket."""
+def parameter_lists(lines):
+    """The types of a function's parameters, and of those that a call may give where the last ones have
+    defaults: such a call is ambiguous beside another function. `lines` begin behind the opening bracket."""
     text = ""
     for line in lines:
         text += " " + line.strip()
         if text.count("(") + 1 <= text.count(")"):
             break
-    listed = text.split(") {")[0].split(");")[0]
-    without_defaults = (re.sub(r"\s*=.*", "", part.strip()) for part in listed.split(","))
-    return ",".join(re.sub(r"\s*\b\w+$", "", QUALIFIER.sub("", part)) for part in without_defaults)
+    parts = [part.strip() for part in text.split(") {")[0].split(");")[0].split(",")]
+    types = [re.sub(r"\bconst |\s*&+$", "", re.sub(r"\s*\b\w+$", "", QUALIFIER.sub("", re.sub(r"\s*=.*", "", part))))
+             for part in parts]
+    least = next((number for number, part in enumerate(parts) if "=" in part), len(parts))
+    return [",".join(types[:count]) for count in range(least, len(parts) + 1)]
 
 
 def local_names(text):
@@ -70,7 +74,8 @@ def local_names(text):
                                                        statement[found.end():])):
                     yield space, other
             elif found := FUNCTION.match(line):
-                yield space, f"{found[1]}({parameters([found[2]] + lines[number + 1:])})"
+                for listed in parameter_lists([found[2]] + lines[number + 1:]):
+                    yield space, f"{found[1]}({listed})"
 
 
 def header_constants(text):
@@ -128,10 +133,11 @@ def main():
     modules = [[Path(name) for name in sys.argv[1:]]] if len(sys.argv) > 1 else [
         [file for ext in ("cpp", "h") for file in (ROOT / module).rglob(f"*.{ext}")
          if "node_modules" not in file.parts]
-        for module in MODULES]
+        for module in MODULES + TESTS]
     faults = [fault for files in modules for fault in twice(files)]
     for number, files in enumerate(modules):
-        headers = [file for below in modules[:number + 1] for file in below if file.suffix == ".h"]
+        headers = [file for below in modules[:number + 1] for file in below if file.suffix == ".h" and
+                   (number < len(MODULES) or ROOT / "cli" not in file.parents)]  # no test includes it
         faults += hidden_types(files, headers)
     for name, files in faults:
         print(f"{name} is defined in {' and '.join(files)}: share it, or rename one")

@@ -168,13 +168,14 @@ TEST(CornerIndex, RanksTheNodeThatSeesTheSameFirst) {
   for (std::uint64_t i = 0; i < 20; ++i) {
     for (const MapNode& node : map_of(marks(100 + i, 40), 2).nodes) map.nodes.push_back(node);
   }
-  const internal::CornerIndex index(map);
+  const vernier::localise::internal::CornerIndex index(map);
   EXPECT_EQ(index.descriptor_size(), 16);
   EXPECT_GT(index.words(), 500);
   EXPECT_LE(index.words(), 800);  // a mark that is seen twice is one word
   for (std::uint64_t i = 0; i < 20; ++i) {
     const PlaceView query = view_of(marks(100 + i, 40), {0.1, 0.1, 0.02});
-    const auto ranked = index.rank(internal::descriptor_columns(query.corners, 16, "query"), 2);
+    const auto ranked =
+        index.rank(vernier::localise::internal::descriptor_columns(query.corners, 16, "query"), 2);
     ASSERT_EQ(ranked.size(), 2u);
     EXPECT_EQ(ranked[0].node / 2, static_cast<int>(i));
     EXPECT_EQ(ranked[1].node / 2, static_cast<int>(i));
@@ -240,7 +241,7 @@ TEST(NeedsCorners, OfTheMethodAndByOption) {
 /// The error of a step on the floor is that which its covariance states: the mean NEES of 200
 /// trials lies within 4 standard deviations of 3.
 TEST(FloorStep, ErrorsAreThoseStated) {
-  using namespace internal;
+  using namespace vernier::localise::internal;
   constexpr int trials = 200;
   constexpr double sigma_px = 0.2;
   const auto room = marks(11, 60);
@@ -271,7 +272,7 @@ TEST(FloorStep, ErrorsAreThoseStated) {
 }
 
 TEST(FloorStep, MotionsOfCameraAndRobotBelongTogether) {
-  using namespace internal;
+  using namespace vernier::localise::internal;
   const auto rig = test::shipped_rig();
   const FloorViews views{{*rig, *rig}, {1.0, 0.2}, {1.5, -0.1}};
   const Pose2D step{0.5, -0.25, 0.75};

@@ -88,22 +88,25 @@ PairShares pair_shares(const Scene& scene, const JoinedLines& joined) {
 
 TEST(JoinedLines, InformationAddsUp) {
   const Scene scene = scene_of(random_lines(1, 0), 8, 0, {});
-  std::vector<internal::WorldSighting> all;
+  std::vector<vernier::localise::internal::WorldSighting> all;
   for (const SegmentsOfView& view : scene.views) {
-    all.push_back(internal::in_world(view.segments[0], view.T_world_camera, {}));
+    all.push_back(vernier::localise::internal::in_world(view.segments[0], view.T_world_camera, {}));
   }
-  std::vector<const internal::WorldSighting*> members;
+  std::vector<const vernier::localise::internal::WorldSighting*> members;
   for (const auto& s : all) members.push_back(&s);
-  const internal::FittedLine together = internal::fitted(members);
+  const vernier::localise::internal::FittedLine together =
+      vernier::localise::internal::fitted(members);
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (const auto& s : all) {
-    const internal::LineMeasurement m = internal::measured(s, together.frame);
+    const vernier::localise::internal::LineMeasurement m =
+        vernier::localise::internal::measured(s, together.frame);
     sum += m.by_line().transpose() * m.covariance_m2.inverse() * m.by_line();
   }
   EXPECT_LT((sum - together.information).norm(), 1e-6 * sum.norm());
   // the same again halves the covariance and leaves the line
   members.insert(members.end(), members.begin(), members.end());
-  const internal::FittedLine twice = internal::fitted(members);
+  const vernier::localise::internal::FittedLine twice =
+      vernier::localise::internal::fitted(members);
   EXPECT_LT((2 * twice.covariance - together.covariance).norm(), 1e-6 * together.covariance.norm());
   EXPECT_LT((twice.frame.axes.col(2) - together.frame.axes.col(2)).norm(), 1e-9);
 }

@@ -23,7 +23,7 @@ using namespace vernier::localise::internal;
 namespace {
 
 /// Ten rooms side by side, 10 m apart.
-TopologicalMap ten_rooms() {
+TopologicalMap ten_similar_rooms() {
   std::vector<MapNode> nodes;
   for (int i = 0; i < 10; ++i) {
     nodes.push_back({{10.0 * i, 0, 0.3 * i}, {test::random_room(100 + i), {}}});
@@ -33,7 +33,7 @@ TopologicalMap ten_rooms() {
 
 /// The rankers by histograms put the room itself first.
 TEST(HistogramRankers, TheRoomItselfIsFirst) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = ten_similar_rooms();
   for (const char* name : {"pgh", "pgh_aggregate"}) {
     const auto ranker = make_ranker(name, map, {});
     for (int i = 0; i < 10; ++i) {
@@ -48,7 +48,7 @@ TEST(HistogramRankers, TheRoomItselfIsFirst) {
 }
 
 TEST(PghLocaliser, AnswersWithNodeAndMetricPose) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = ten_similar_rooms();
   const auto localiser = make_localiser("pgh", map);
   const Pose2D step{0.3, -0.2, 0.15};
   const LocalisationAnswer answer =
@@ -60,7 +60,7 @@ TEST(PghLocaliser, AnswersWithNodeAndMetricPose) {
 }
 
 TEST(PghLocaliser, AbstainsWithTooFewLines) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = ten_similar_rooms();
   const LocalisationAnswer answer =
       make_localiser("pgh", map)->localise({test::random_room(100, 3), {}});
   EXPECT_EQ(answer.status, LocalisationStatus::too_few_lines);

@@ -202,7 +202,8 @@ TEST(Odometry, WhatCoversMostOfTheImageStands) {
       return -1.0;
     }
     EXPECT_LT(error_of(step->T_from_to).tail<3>().norm(), 0.01);
-    return internal::other_motion(rig, scene.from, scene.to, scene.links, *step, {});
+    return vernier::localise::internal::other_motion(rig, scene.from, scene.to, scene.links, *step,
+                                                     {});
   };
   EXPECT_EQ(other_motion(), 0);
   add_mover(rig, 300, 0.15, scene);  // five times as many corners, in a fortieth of the image

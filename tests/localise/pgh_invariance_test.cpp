@@ -23,11 +23,11 @@ namespace {
 constexpr PghType types[] = {PghType::mirror, PghType::rotation, PghType::directed};
 constexpr PghBlur blurs[] = {PghBlur::fixed, PghBlur::per_entry};
 
-using ImageLines = std::vector<ImageSegment>;
+using LinesOfImage = std::vector<ImageSegment>;
 using Room = std::vector<PlaceLine>;
 
-ImageLines random_lines_in_image(std::uint64_t seed) {
-  ImageLines lines;
+LinesOfImage random_lines_in_image(std::uint64_t seed) {
+  LinesOfImage lines;
   for (int i = 0; i < 25; ++i) {
     RandomStream d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
     const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
@@ -37,7 +37,7 @@ ImageLines random_lines_in_image(std::uint64_t seed) {
 }
 
 template <class Move>
-ImageLines each_end(ImageLines lines, Move move) {
+LinesOfImage each_end(LinesOfImage lines, Move move) {
   for (ImageSegment& line : lines) line = {move(line.a_px), move(line.b_px)};
   return lines;
 }
@@ -51,18 +51,18 @@ Room each_end(Room room, Move move) {
   return room;
 }
 
-ImageLines moved(const ImageLines& lines, std::uint64_t seed) {
+LinesOfImage moved(const LinesOfImage& lines, std::uint64_t seed) {
   RandomStream d({.seed = seed});
   const Eigen::Rotation2Dd R(d.uniform(-3, 3));
   const Eigen::Vector2d t(d.uniform(-200, 200), d.uniform(-200, 200));
   return each_end(lines, [&](const Eigen::Vector2d& x) -> Eigen::Vector2d { return R * x + t; });
 }
 
-ImageLines reflected(const ImageLines& lines) {
+LinesOfImage reflected(const LinesOfImage& lines) {
   return each_end(lines, [](const Eigen::Vector2d& x) { return Eigen::Vector2d(-x.x(), x.y()); });
 }
 
-ImageLines with_every_second_reversed(ImageLines lines) {
+LinesOfImage with_every_second_reversed(LinesOfImage lines) {
   for (std::size_t i = 0; i < lines.size(); i += 2) std::swap(lines[i].a_px, lines[i].b_px);
   return lines;
 }
@@ -107,7 +107,7 @@ void for_all_options(PghOptions options, Check check) {
 
 TEST(PghInvariance, ImageTypesIgnoreWhatTheyClaim) {
   for_all_options(image_pgh_options(), [](const PghOptions& o, std::uint64_t seed) {
-    const ImageLines lines = random_lines_in_image(seed);
+    const LinesOfImage lines = random_lines_in_image(seed);
     const Pgh p = image_histograms(lines, o);
     EXPECT_LT(difference(p, image_histograms(moved(lines, seed), o)), same);
 
@@ -166,7 +166,7 @@ TEST(PghInvariance, DirectedLinesAreSeenFromASide) {
 
 /// Folding the histograms of a type gives those of the next coarser one.
 TEST(PghInvariance, EachTypeIsAFoldOfTheNext) {
-  const ImageLines lines = random_lines_in_image(7);
+  const LinesOfImage lines = random_lines_in_image(7);
   PghOptions o = image_pgh_options();
   o.type = PghType::directed;
   const Pgh directed = image_histograms(lines, o);

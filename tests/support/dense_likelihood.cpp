@@ -34,7 +34,7 @@ struct Scaled {
 
 }  // namespace
 
-DenseLikelihood::DenseLikelihood(std::vector<internal::FrameRows> frames,
+DenseLikelihood::DenseLikelihood(std::vector<vernier::internal::FrameRows> frames,
                                  std::vector<Eigen::Vector3d> target_m)
     : frames_(std::move(frames)), target_m_(std::move(target_m)) {
   Index rows = 0;
@@ -62,7 +62,7 @@ DenseLikelihood::DenseLikelihood(std::vector<internal::FrameRows> frames,
   }
 }
 
-MatrixXd DenseLikelihood::V(const internal::CornerNoise& noise) const {
+MatrixXd DenseLikelihood::V(const vernier::internal::CornerNoise& noise) const {
   VectorXd b(D_.cols());
   for (Index i = 0; i < b.size(); ++i)
     b[i] = i % 3 < 2 ? noise.shape_plane_m : noise.shape_height_m;
@@ -74,14 +74,14 @@ MatrixXd DenseLikelihood::V(const internal::CornerNoise& noise) const {
   return V;
 }
 
-MatrixXd DenseLikelihood::P(const internal::CornerNoise& noise) const {
+MatrixXd DenseLikelihood::P(const vernier::internal::CornerNoise& noise) const {
   const Scaled of_V(V(noise));
   const MatrixXd ViX = of_V.solve(X_);
   return of_V.solve(MatrixXd::Identity(r_.size(), r_.size())) -
          ViX * Scaled(X_.transpose() * ViX).solve(ViX.transpose());
 }
 
-double DenseLikelihood::minus_two_log(const internal::CornerNoise& noise) const {
+double DenseLikelihood::minus_two_log(const vernier::internal::CornerNoise& noise) const {
   const Scaled of_V(V(noise)), of_X(X_.transpose() * of_V.solve(X_));
   return of_V.log_determinant() + of_X.log_determinant() + r_.dot(P(noise) * r_);
 }

@@ -38,7 +38,7 @@ inline void logistic_moments(double centre, double spread, double& mean, double&
   constexpr int steps = 400;
   mean = variance = 0;
   for (int i = 0; i < steps; ++i) {
-    const double z = internal::normal_quantile((i + 0.5) / steps);
+    const double z = vernier::internal::normal_quantile((i + 0.5) / steps);
     const double rate = 1 / (1 + std::exp(-(centre + spread * z)));
     mean += rate / steps;
     variance += rate * rate / steps;
@@ -88,10 +88,10 @@ class MapMaker {
   std::vector<ClusterCount> maps(std::uint32_t study, int count) const {
     std::vector<ClusterCount> counts;
     for (int map = 0; map < count; ++map) {
-      internal::RandomStream draws({.seed = made_.seed,
-                                    .trial = study,
-                                    .feature = static_cast<std::uint32_t>(map),
-                                    .source = made_maps_detail::test_source});
+      vernier::internal::RandomStream draws({.seed = made_.seed,
+                                             .trial = study,
+                                             .feature = static_cast<std::uint32_t>(map),
+                                             .source = made_maps_detail::test_source});
       counts.push_back(one(draws));
     }
     return counts;
@@ -100,7 +100,7 @@ class MapMaker {
  private:
   static constexpr double worse_share = 0.125;
 
-  ClusterCount one(internal::RandomStream& draws) const {
+  ClusterCount one(vernier::internal::RandomStream& draws) const {
     ClusterCount count;
     const double p = made_.success, rho = made_.correlation;
     const bool urn = made_.kind == MapKind::beta && rho > 0;

@@ -39,7 +39,8 @@ class MadeRace {
   MadeRace(const MadeSettings& made, std::uint32_t study) : made_(made), study_(study) {
     order_.resize(made.success.size());
     std::iota(order_.begin(), order_.end(), 0u);
-    internal::RandomStream draws({.seed = made.seed, .trial = study, .source = test_source});
+    vernier::internal::RandomStream draws(
+        {.seed = made.seed, .trial = study, .source = test_source});
     for (std::size_t i = order_.size(); i > 1; --i) {
       std::swap(order_[i - 1], order_[draws.below(static_cast<std::uint32_t>(i))]);
     }
@@ -53,10 +54,10 @@ class MadeRace {
     const std::uint32_t which = setting(candidate);
     double rate = made_.success[which];
     if (made_.own_effect > 0 || made_.common_effect > 0) {
-      internal::RandomStream own(place(1 + which, frame, 1)), common(place(0, frame, 1));
+      vernier::internal::RandomStream own(place(1 + which, frame, 1)), common(place(0, frame, 1));
       rate += made_.own_effect * own.normal() + made_.common_effect * common.normal();
     }
-    internal::RandomStream draws(place(1 + which, frame, 0));
+    vernier::internal::RandomStream draws(place(1 + which, frame, 0));
     std::vector<double> scores(static_cast<std::size_t>(made_.trials_a_round));
     for (double& score : scores) score = draws.uniform() < rate ? 1 : 0;
     return scores;
@@ -66,7 +67,9 @@ class MadeRace {
   static constexpr std::uint32_t test_source = 201;
 
   std::uint32_t setting(int candidate) const { return order_[static_cast<std::size_t>(candidate)]; }
-  internal::RandomCounter place(std::uint32_t feature, std::uint32_t frame, int eye) const {
+  vernier::internal::RandomCounter place(std::uint32_t feature,
+                                         std::uint32_t frame,
+                                         int eye) const {
     return {.seed = made_.seed,
             .trial = study_,
             .feature = feature,

@@ -21,13 +21,13 @@
 namespace vernier::test {
 
 /// Components of which every one matters.
-inline constexpr internal::CornerNoise all_parts{.white_px = 0.11,
-                                                 .field_px = 0.09,
-                                                 .field_length_m = 0.05,
-                                                 .motion_rad = 1e-3,
-                                                 .motion_m = 2e-4,
-                                                 .shape_plane_m = 5e-5,
-                                                 .shape_height_m = 1.5e-4};
+inline constexpr vernier::internal::CornerNoise all_parts{.white_px = 0.11,
+                                                          .field_px = 0.09,
+                                                          .field_length_m = 0.05,
+                                                          .motion_rad = 1e-3,
+                                                          .motion_m = 2e-4,
+                                                          .shape_plane_m = 5e-5,
+                                                          .shape_height_m = 1.5e-4};
 
 /// A simulated board whose corners have all of calib/noise/corner_noise.h, with the truth of each.
 struct NoisyBoard {
@@ -40,23 +40,23 @@ struct NoisyBoard {
 inline NoisyBoard noisy_board(const Rig& rig,
                               const Chessboard& board,
                               SimulatedBoardOptions options,
-                              const internal::CornerNoise& noise) {
+                              const vernier::internal::CornerNoise& noise) {
   enum Draw : std::uint32_t { motion, field, shape };
   constexpr std::uint32_t test_source = 255;
   const auto draws = [&](Draw what, int frame, int camera) {
-    return internal::RandomStream({.seed = options.seed,
-                                   .trial = options.trial,
-                                   .feature = what,
-                                   .source = test_source,
-                                   .eye = static_cast<std::uint32_t>(camera),
-                                   .frame = static_cast<std::uint32_t>(frame)});
+    return vernier::internal::RandomStream({.seed = options.seed,
+                                            .trial = options.trial,
+                                            .feature = what,
+                                            .source = test_source,
+                                            .eye = static_cast<std::uint32_t>(camera),
+                                            .frame = static_cast<std::uint32_t>(frame)});
   };
   options.pixel_sigma_px = noise.white_px;
   NoisyBoard result{simulate_board(rig, board, options), {}, {}};
   BoardObservations& seen = result.board.observations;
   const auto& points = seen.target_m;
   const auto n = static_cast<Eigen::Index>(points.size());
-  internal::RandomStream shapes = draws(shape, 0, 0);
+  vernier::internal::RandomStream shapes = draws(shape, 0, 0);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double x = shapes.normal(), y = shapes.normal(), z = shapes.normal();
     result.shape_m.emplace_back(noise.shape_plane_m * x, noise.shape_plane_m * y,
@@ -64,7 +64,7 @@ inline NoisyBoard noisy_board(const Rig& rig,
   }
   Eigen::MatrixXd L;
   if (noise.field_px > 0) {
-    Eigen::MatrixXd K = internal::field_correlation(points, noise.field_length_m);
+    Eigen::MatrixXd K = vernier::internal::field_correlation(points, noise.field_length_m);
     K.diagonal().array() += 1e-9;
     L = noise.field_px * Eigen::MatrixXd(K.llt().matrixL());
   }
@@ -76,17 +76,17 @@ inline NoisyBoard noisy_board(const Rig& rig,
     for (const auto& X : points) centre += (T * X) / static_cast<double>(n);
     Eigen::Matrix<double, 6, 1> u = Eigen::Matrix<double, 6, 1>::Zero();
     if (c > 0) {
-      internal::RandomStream motions = draws(motion, view.frame, c);
+      vernier::internal::RandomStream motions = draws(motion, view.frame, c);
       for (int k = 0; k < 6; ++k)
         u[k] = motions.normal() * (k < 3 ? noise.motion_rad : noise.motion_m);
       if (noise.motion_baseline_m > 0) {
-        const Eigen::Vector3d along = internal::motion_axes(rig, c).col(0);
+        const Eigen::Vector3d along = vernier::internal::motion_axes(rig, c).col(0);
         const double across = u.tail<3>().dot(along);
         u.tail<3>() += (noise.motion_baseline_m / noise.motion_m - 1) * across * along;
       }
       if (c == 1) result.motions.push_back(u);
     }
-    internal::RandomStream fields = draws(field, view.frame, c);
+    vernier::internal::RandomStream fields = draws(field, view.frame, c);
     Eigen::MatrixX2d error = Eigen::MatrixX2d::Zero(n, 2);
     for (Eigen::Index i = 0; i < n; ++i) error.row(i) << fields.normal(), fields.normal();
     if (noise.field_px > 0) error = (L * error).eval();

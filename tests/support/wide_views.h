@@ -62,7 +62,7 @@ inline WideViews wide_views(const Rig& rig, const WideViewOptions& options) {
                               0);
   }
   const Eigen::Vector3d middle = 0.5 * (all.target_m.front() + all.target_m.back());
-  internal::RandomStream d({.seed = options.seed});
+  vernier::internal::RandomStream d({.seed = options.seed});
   for (int frame = 0; frame < options.frames + options.edge_frames; ++frame) {
     const bool edge = frame >= options.frames;
     double from_axis = options.from_axis_deg * degree * std::sqrt(d.uniform());

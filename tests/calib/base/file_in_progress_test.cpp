@@ -21,7 +21,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 using test::error_message;
 
 namespace fs = std::filesystem;

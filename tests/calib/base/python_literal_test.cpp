@@ -11,7 +11,7 @@
 namespace vernier::internal {
 namespace {
 
-std::string complaint(const std::string& text) {
+std::string literal_complaint(const std::string& text) {
   return test::error_message([&] { parse_python_literal(text, "a.cameramodel"); });
 }
 
@@ -29,29 +29,32 @@ TEST(PythonLiteral, ReadsWhatMrcalAndNumPyWrite) {
 
 TEST(PythonLiteral, RefusesDepthLengthAndRange) {
   for (const std::size_t depth : {40U, 100'000U}) {
-    EXPECT_NE(complaint(std::string(depth, '[')).find(":1: is nested more than 32 levels deep"),
-              std::string::npos);
+    EXPECT_NE(
+        literal_complaint(std::string(depth, '[')).find(":1: is nested more than 32 levels deep"),
+        std::string::npos);
   }
-  EXPECT_NE(complaint("[1,\n1e309]").find(":2: \"1e309\" is not a number that a double can hold"),
-            std::string::npos);
-  EXPECT_EQ(complaint("[1e-400]"), "");
-  EXPECT_NE(complaint("[" + std::string(2'000, '1') + "]").find("more than 1000 bytes"),
+  EXPECT_NE(
+      literal_complaint("[1,\n1e309]").find(":2: \"1e309\" is not a number that a double can hold"),
+      std::string::npos);
+  EXPECT_EQ(literal_complaint("[1e-400]"), "");
+  EXPECT_NE(literal_complaint("[" + std::string(2'000, '1') + "]").find("more than 1000 bytes"),
             std::string::npos);
   std::string many = "[";
   for (int i = 0; i < 100'001; ++i) many += "1,";
-  EXPECT_NE(complaint(many + "]").find("more than 100000 values"), std::string::npos);
+  EXPECT_NE(literal_complaint(many + "]").find("more than 100000 values"), std::string::npos);
 }
 
 TEST(PythonLiteral, RefusesAKeyGivenTwice) {
-  EXPECT_NE(complaint("{'a': 1,\n'a': 2}").find(":2: has the key 'a' twice"), std::string::npos);
+  EXPECT_NE(literal_complaint("{'a': 1,\n'a': 2}").find(":2: has the key 'a' twice"),
+            std::string::npos);
 }
 
 TEST(PythonLiteral, RefusesWhatIsCutOrNotUtf8) {
   const std::string whole = "{'a': [1, 2], 'b': 'c'}";
   for (std::size_t cut = 0; cut < whole.size(); ++cut)
-    EXPECT_NE(complaint(whole.substr(0, cut)), "");
-  EXPECT_NE(complaint("{'a': '\xff'}").find("is not UTF-8"), std::string::npos);
-  EXPECT_NE(complaint("[\x1b]").find("\"\\x1b\""), std::string::npos);
+    EXPECT_NE(literal_complaint(whole.substr(0, cut)), "");
+  EXPECT_NE(literal_complaint("{'a': '\xff'}").find("is not UTF-8"), std::string::npos);
+  EXPECT_NE(literal_complaint("[\x1b]").find("\"\\x1b\""), std::string::npos);
 }
 
 }  // namespace

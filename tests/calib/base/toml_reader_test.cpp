@@ -14,7 +14,7 @@
 namespace vernier::internal {
 namespace {
 
-std::string complaint(const std::string& text) {
+std::string toml_complaint(const std::string& text) {
   return test::error_message([&] { parse_toml(text, "a.toml"); });
 }
 
@@ -50,7 +50,7 @@ TEST(TomlReader, ReadsAllOfTheLanguageButDates) {
 // toml++ 3.3 has no defined behaviour for these.
 TEST(TomlReader, RefusesJoinedLinesThatBeginBeyondAscii) {
   const auto joined = [](const std::string& next) {
-    return complaint("m = \"\"\"a \\ \n \n\t" + next + "\"\"\"");
+    return toml_complaint("m = \"\"\"a \\ \n \n\t" + next + "\"\"\"");
   };
   EXPECT_EQ(joined("e"), "");
   for (const char* next : {"é", "\u3042", "\xC2\xA0"}) {
@@ -88,50 +88,52 @@ TEST(TomlWriter, WritesWhatItReads) {
 }
 
 TEST(TomlReader, RefusesDepth) {
-  EXPECT_EQ(complaint("a = " + repeated("[", 31) + repeated("]", 31)), "");
+  EXPECT_EQ(toml_complaint("a = " + repeated("[", 31) + repeated("]", 31)), "");
   const std::string fault = "a.toml:1: is nested more than 32 levels deep; flatten it";
   for (const std::size_t depth : {33U, 50'000U, 1'000'000U}) {
-    EXPECT_EQ(complaint("a" + repeated(".a", depth) + " = 1"), fault);
-    EXPECT_EQ(complaint("[a" + repeated(".a", depth) + "]"), fault);
-    EXPECT_EQ(complaint("[[a" + repeated(".a", depth) + "]]"), fault);
-    EXPECT_EQ(complaint("a = " + repeated("[", depth)), fault);
-    EXPECT_EQ(complaint("a = " + repeated("{a=", depth)), fault);
+    EXPECT_EQ(toml_complaint("a" + repeated(".a", depth) + " = 1"), fault);
+    EXPECT_EQ(toml_complaint("[a" + repeated(".a", depth) + "]"), fault);
+    EXPECT_EQ(toml_complaint("[[a" + repeated(".a", depth) + "]]"), fault);
+    EXPECT_EQ(toml_complaint("a = " + repeated("[", depth)), fault);
+    EXPECT_EQ(toml_complaint("a = " + repeated("{a=", depth)), fault);
   }
-  EXPECT_NE(complaint("[a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a]\nb.b.b.b.b.b.b.b.b.b.b.b.b.b = [[[1]]]"),
-            "");
+  EXPECT_NE(
+      toml_complaint("[a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a]\nb.b.b.b.b.b.b.b.b.b.b.b.b.b = [[[1]]]"),
+      "");
 }
 
 TEST(TomlReader, RefusesAKeyGivenTwice) {
   for (const char* text : {"a = 1\na = 2", "a.b = 1\na.b = 2", "[a]\n[a]", "a = { b = 1, b = 2 }",
                            "[a]\nb = 1\n[a.b]", "a = 1\n[[a]]", "\"a\" = 1\n'a' = 2"}) {
-    EXPECT_NE(complaint(text).find("a.toml:"), std::string::npos) << text;
-    EXPECT_NE(complaint(text).find("defines what is defined before"), std::string::npos) << text;
+    EXPECT_NE(toml_complaint(text).find("a.toml:"), std::string::npos) << text;
+    EXPECT_NE(toml_complaint(text).find("defines what is defined before"), std::string::npos)
+        << text;
   }
 }
 
 TEST(TomlReader, ShowsALineThatRepeatsAKeyAsItIs) {
   const std::string rest = " defines what is defined before; define every key and table once";
-  EXPECT_EQ(complaint("\"k\\u001b\" = 1\r\n  \"k\\u001b\" = 2 \r\n"),
+  EXPECT_EQ(toml_complaint("\"k\\u001b\" = 1\r\n  \"k\\u001b\" = 2 \r\n"),
             "a.toml:2: \"\"k\\u001b\" = 2\"" + rest);
-  EXPECT_EQ(complaint("a = { x = 1 }\na.y = 2"), "a.toml:2: \"a.y = 2\"" + rest);
-  EXPECT_EQ(complaint("\xEF\xBB\xBFt = 1\n\n\t[[t]]"), "a.toml:3: \"[[t]]\"" + rest);
-  EXPECT_EQ(complaint("\"é ü\" = 1\n\"é ü\" = 1"), "a.toml:2: \"\"é ü\" = 1\"" + rest);
+  EXPECT_EQ(toml_complaint("a = { x = 1 }\na.y = 2"), "a.toml:2: \"a.y = 2\"" + rest);
+  EXPECT_EQ(toml_complaint("\xEF\xBB\xBFt = 1\n\n\t[[t]]"), "a.toml:3: \"[[t]]\"" + rest);
+  EXPECT_EQ(toml_complaint("\"é ü\" = 1\n\"é ü\" = 1"), "a.toml:2: \"\"é ü\" = 1\"" + rest);
 }
 
 TEST(TomlReader, RefusesNumbersOutOfRange) {
-  EXPECT_EQ(complaint("\na = 1e309"),
+  EXPECT_EQ(toml_complaint("\na = 1e309"),
             "a.toml:2: \"1e309\" is not a number that a double can hold; correct it");
-  EXPECT_EQ(complaint("a = 9223372036854775807"), "");
-  EXPECT_NE(complaint("a = 9223372036854775808").find("too large a whole number"),
+  EXPECT_EQ(toml_complaint("a = 9223372036854775807"), "");
+  EXPECT_NE(toml_complaint("a = 9223372036854775808").find("too large a whole number"),
             std::string::npos);
-  EXPECT_NE(complaint("a = 0x8000000000000000").find("too large a whole number"),
+  EXPECT_NE(toml_complaint("a = 0x8000000000000000").find("too large a whole number"),
             std::string::npos);
-  EXPECT_NE(complaint("a = 1." + std::string(1'000, '1')).find("more than 100 bytes"),
+  EXPECT_NE(toml_complaint("a = 1." + std::string(1'000, '1')).find("more than 100 bytes"),
             std::string::npos);
   for (const char* word : {"01",  "1_",  "_1",  "1__0",  "1.",    ".5",         "1e",       "1e+",
                            "0x",  "0xG", "0b2", "+0x1",  "0x1p3", "1979-05-27", "07:32:00", "TRUE",
                            "one", "+",   "--1", "1.5.2", "INF",   "1 2"}) {
-    EXPECT_NE(complaint(std::string("a = ") + word), "") << word;
+    EXPECT_NE(toml_complaint(std::string("a = ") + word), "") << word;
   }
 }
 
@@ -180,27 +182,28 @@ TEST(TomlReader, RefusesSyntaxThatItsLibraryWouldNotSurvive) {
                            "a..b = 1",
                            "a.  = 1",
                            "a = \xE2\x80\xA8"}) {
-    const std::string said = complaint(text);
+    const std::string said = toml_complaint(text);
     EXPECT_EQ(said.substr(0, 7), "a.toml:") << text;
     EXPECT_LT(said.size(), 200U);
   }
 }
 
 TEST(TomlReader, RefusesWhatIsNotUtf8OrTooLong) {
-  EXPECT_EQ(complaint("a = 1\nb = '\xff'"),
+  EXPECT_EQ(toml_complaint("a = 1\nb = '\xff'"),
             "a.toml:2: is not UTF-8; save the file as UTF-8, or name another one");
-  EXPECT_NE(complaint(std::string("a = 1\0", 6)).find("zero byte"), std::string::npos);
-  EXPECT_NE(complaint(std::string(300, 'a') + " = 1").find("more than 256 bytes"),
+  EXPECT_NE(toml_complaint(std::string("a = 1\0", 6)).find("zero byte"), std::string::npos);
+  EXPECT_NE(toml_complaint(std::string(300, 'a') + " = 1").find("more than 256 bytes"),
             std::string::npos);
-  EXPECT_NE(complaint("a = '" + std::string(200'000, 'b') + "'").find("more than 100000 bytes"),
-            std::string::npos);
+  EXPECT_NE(
+      toml_complaint("a = '" + std::string(200'000, 'b') + "'").find("more than 100000 bytes"),
+      std::string::npos);
   std::string dotted, lists;
   for (int i = 0; i < 10'001; ++i) {
     dotted += "a" + std::to_string(i) + ".b = 1\n";
     lists += "[[a" + std::to_string(i) + "]]\n";
   }
-  EXPECT_NE(complaint(dotted).find("more than 10000 dotted keys"), std::string::npos);
-  EXPECT_NE(complaint(lists).find("more than 500 different lists"), std::string::npos);
+  EXPECT_NE(toml_complaint(dotted).find("more than 10000 dotted keys"), std::string::npos);
+  EXPECT_NE(toml_complaint(lists).find("more than 500 different lists"), std::string::npos);
   TomlLimits few;
   few.bytes = 5;
   EXPECT_NE(test::error_message([&] { check_toml("a =  1", "a.toml", few); }), "");

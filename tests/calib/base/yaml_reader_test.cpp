@@ -11,11 +11,11 @@
 namespace vernier::internal {
 namespace {
 
-std::string complaint(const std::string& text, const YamlLimits& limits = {}) {
+std::string yaml_complaint(const std::string& text, const YamlLimits& limits = {}) {
   return test::error_message([&] { parse_yaml(text, "a.yaml", limits); });
 }
 
-std::string repeated(const std::string& word, std::size_t times) {
+std::string repeated_text(const std::string& word, std::size_t times) {
   std::string text;
   for (std::size_t i = 0; i < times; ++i) text += word;
   return text;
@@ -47,50 +47,50 @@ TEST(YamlReader, ReadsOpenCvsFiles) {
 }
 
 TEST(YamlReader, RefusesDepth) {
-  EXPECT_EQ(complaint(repeated("[", 32) + repeated("]", 32)), "");
+  EXPECT_EQ(yaml_complaint(repeated_text("[", 32) + repeated_text("]", 32)), "");
   for (const std::size_t depth : {40U, 10'000U, 200'000U}) {
-    EXPECT_EQ(complaint("a: " + repeated("[", depth)),
+    EXPECT_EQ(yaml_complaint("a: " + repeated_text("[", depth)),
               "a.yaml:1: is nested more than 32 levels deep; name another file");
-    EXPECT_NE(complaint(repeated("{a: ", depth)).find("is nested"), std::string::npos);
-    EXPECT_NE(complaint(repeated("- ", depth)).find("is nested"), std::string::npos);
-    EXPECT_NE(complaint(repeated("? ", depth)), "");
+    EXPECT_NE(yaml_complaint(repeated_text("{a: ", depth)).find("is nested"), std::string::npos);
+    EXPECT_NE(yaml_complaint(repeated_text("- ", depth)).find("is nested"), std::string::npos);
+    EXPECT_NE(yaml_complaint(repeated_text("? ", depth)), "");
   }
 }
 
 TEST(YamlReader, RefusesAKeyGivenTwiceInOneMap) {
-  EXPECT_EQ(complaint("a: 1\nb:\n  a: 2\n"), "");
-  EXPECT_EQ(complaint("a: 1\nb: 2\n'a': 3\n"),
+  EXPECT_EQ(yaml_complaint("a: 1\nb:\n  a: 2\n"), "");
+  EXPECT_EQ(yaml_complaint("a: 1\nb: 2\n'a': 3\n"),
             "a.yaml:3: the key \"a\" appears a second time; keep one");
 }
 
 TEST(YamlReader, RefusesAliasesAndSeveralDocuments) {
-  EXPECT_EQ(complaint("a: &x 1\nb: *x\n"),
+  EXPECT_EQ(yaml_complaint("a: &x 1\nb: *x\n"),
             "a.yaml:2: aliases are not supported; write the value itself");
-  EXPECT_EQ(complaint("a: 1\n---\nb: 1\n"),
+  EXPECT_EQ(yaml_complaint("a: 1\n---\nb: 1\n"),
             "a.yaml:2: a second document begins here; give one document a file");
-  EXPECT_EQ(complaint("%YAML 1.1\n%TAG !a! b\n---\na: 1\n"),
+  EXPECT_EQ(yaml_complaint("%YAML 1.1\n%TAG !a! b\n---\na: 1\n"),
             "a.yaml:2: directives of tags are not supported; remove the line");
-  EXPECT_NE(complaint("[a]: 1\n"), "");
+  EXPECT_NE(yaml_complaint("[a]: 1\n"), "");
 }
 
 TEST(YamlReader, RefusesWhatIsMalformedNotUtf8OrTooLong) {
   for (const char* text : {"a: [1, 2", "a: 'b", "a: 1\n b: 2\n", "a:\n\t- 1", "{a: 1", "a: %b", "@",
                            "a: b: c", "\x01", "!<", "%FOO", "a: !x!y z"}) {
-    const std::string said = complaint(text);
+    const std::string said = yaml_complaint(text);
     EXPECT_EQ(said.substr(0, 7), "a.yaml:") << text;
     EXPECT_LT(said.size(), 200U);
   }
-  EXPECT_EQ(complaint("a: 1\nb: \xff"),
+  EXPECT_EQ(yaml_complaint("a: 1\nb: \xff"),
             "a.yaml:2: is not UTF-8; save the file as UTF-8, or name another one");
   YamlLimits few;
   few.values = 3;
   few.keys = 2;
   few.text_bytes = 4;
-  EXPECT_NE(complaint("[1, 2, 3]", few).find("more than 3 values"), std::string::npos);
-  EXPECT_NE(complaint("{a: 1, b: 2, c: 3}", few), "");
-  EXPECT_NE(complaint("abcde", few).find("more than 4 bytes"), std::string::npos);
+  EXPECT_NE(yaml_complaint("[1, 2, 3]", few).find("more than 3 values"), std::string::npos);
+  EXPECT_NE(yaml_complaint("{a: 1, b: 2, c: 3}", few), "");
+  EXPECT_NE(yaml_complaint("abcde", few).find("more than 4 bytes"), std::string::npos);
   few.bytes = 8;
-  EXPECT_NE(complaint("a: 1     ", few).find("MB long"), std::string::npos);
+  EXPECT_NE(yaml_complaint("a: 1     ", few).find("MB long"), std::string::npos);
 }
 
 TEST(YamlReader, TakesTimeAndMemoryByTheLength) {

@@ -80,7 +80,7 @@ TEST(NoisyBoards, ASmallBoardAmongRoundDotsIsFound) {
     camera.width_px = 480;
     camera.height_px = 360;
     cv::Mat image = test::photograph(test::draw(chessboard), camera);
-    internal::RandomStream d({.seed = seed});
+    vernier::internal::RandomStream d({.seed = seed});
     for (int dots = 0; dots < 150;) {
       const Eigen::Vector2d off(d.uniform(-235, 235), d.uniform(-175, 175));
       if (std::abs(off.x()) < 65 && std::abs(off.y()) < 55) continue;

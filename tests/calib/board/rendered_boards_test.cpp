@@ -28,9 +28,9 @@ using test::camera_before;
 using test::draw;
 using test::photograph;
 
-const Chessboard chessboard{9, 6, 0.03};
+const Chessboard rendered_chessboard{9, 6, 0.03};
 const CharucoBoard charuco{8, 6, 0.04, 0.029, "5x5_100"};
-const AprilTagGrid april{6, 5, 0.05, 0.3};
+const AprilTagGrid april_grid{6, 5, 0.05, 0.3};
 
 Eigen::Vector2d middle_of(const BoardTarget& target) {
   const auto points = target_points(target);
@@ -104,10 +104,11 @@ BoardCamera usual_camera(const BoardTarget& target, double distance, double turn
 // blur and noise of 2 grey values in 195.
 
 TEST_F(RenderedBoards, ChessboardIsFoundWithinItsBound) {
-  const BoardCamera camera = usual_camera(chessboard, 0.4);
-  const BoardDetection found = detect(photograph(draw(chessboard), camera), chessboard);
+  const BoardCamera camera = usual_camera(rendered_chessboard, 0.4);
+  const BoardDetection found =
+      detect(photograph(draw(rendered_chessboard), camera), rendered_chessboard);
   ASSERT_EQ(found.ids.size(), 54u) << found.reason;
-  EXPECT_LT(told_rms(found, chessboard, camera, "rms_1"), 0.047);  // 0.0316
+  EXPECT_LT(told_rms(found, rendered_chessboard, camera, "rms_1"), 0.047);  // 0.0316
 }
 
 TEST_F(RenderedBoards, SquaresNeedNotBeSquare) {
@@ -137,32 +138,33 @@ TEST_F(RenderedBoards, KalibrsCodesAreThoseOfTheDrawings) {
 TEST_F(RenderedBoards, KalibrsGridIsFoundWithinItsBoundAtAnyTurn) {
   for (const int border_bits : {2, 1}) {
     for (const double turn : {0.1, 1.7, 3.1, 4.9}) {
-      const BoardCamera camera = usual_camera(april, 0.5, turn);
-      const BoardDetection found = detect(photograph(draw(april, border_bits), camera), april);
+      const BoardCamera camera = usual_camera(april_grid, 0.5, turn);
+      const BoardDetection found =
+          detect(photograph(draw(april_grid, border_bits), camera), april_grid);
       EXPECT_GE(found.ids.size(), 116u) << found.reason << " border " << border_bits;
       ASSERT_FALSE(found.ids.empty());
-      EXPECT_LT(told_rms(found, april, camera, "rms_4_" + std::to_string(border_bits)),
+      EXPECT_LT(told_rms(found, april_grid, camera, "rms_4_" + std::to_string(border_bits)),
                 0.08)  // 0.053
           << border_bits << " " << turn;
-      EXPECT_LT(worst_error(found, april, camera), 0.5);  // 0.331
+      EXPECT_LT(worst_error(found, april_grid, camera), 0.5);  // 0.331
     }
   }
 }
 
 TEST_F(RenderedBoards, TagsWithoutSquaresBetweenAreBiasedByBlurButFound) {
-  const BoardCamera camera = usual_camera(april, 0.5);
-  const BoardDetection found = detect(photograph(draw(april, 2, false), camera), april);
+  const BoardCamera camera = usual_camera(april_grid, 0.5);
+  const BoardDetection found = detect(photograph(draw(april_grid, 2, false), camera), april_grid);
   EXPECT_EQ(found.ids.size(), 120u) << found.reason;
-  EXPECT_LT(told_rms(found, april, camera, "rms_5"), 0.18);  // 0.119
+  EXPECT_LT(told_rms(found, april_grid, camera, "rms_5"), 0.18);  // 0.119
 }
 
 TEST_F(RenderedBoards, WideLensDoesNotConfuseMarkers) {
-  BoardCamera camera = usual_camera(april, 0.3);
+  BoardCamera camera = usual_camera(april_grid, 0.3);
   camera.f_px = 330;
   camera.k1 = -0.22;
-  const BoardDetection tags = detect(photograph(draw(april, 2), camera), april);
+  const BoardDetection tags = detect(photograph(draw(april_grid, 2), camera), april_grid);
   EXPECT_GE(tags.ids.size(), 100u) << tags.reason;
-  EXPECT_LT(told_rms(tags, april, camera, "rms_6"), 0.053);  // 0.0355
+  EXPECT_LT(told_rms(tags, april_grid, camera, "rms_6"), 0.053);  // 0.0355
   camera = usual_camera(charuco, 0.3);
   camera.f_px = 330;
   camera.k1 = -0.22;
@@ -179,11 +181,11 @@ void cover(cv::Mat& image) {
 }
 
 TEST_F(RenderedBoards, CoveredCornersAreNotUsed) {
-  for (const BoardTarget& target : {BoardTarget(charuco), BoardTarget(april)}) {
+  for (const BoardTarget& target : {BoardTarget(charuco), BoardTarget(april_grid)}) {
     const BoardCamera camera = usual_camera(target, 0.5);
     cv::Mat image = std::holds_alternative<CharucoBoard>(target)
                         ? photograph(draw(charuco, cv::aruco::DICT_5X5_100), camera)
-                        : photograph(draw(april, 2), camera);
+                        : photograph(draw(april_grid, 2), camera);
     cover(image);
     const BoardDetection found = detect(image, target);
     const std::size_t all = target_points(target).size();
@@ -195,12 +197,13 @@ TEST_F(RenderedBoards, CoveredCornersAreNotUsed) {
 }
 
 TEST_F(RenderedBoards, HalfOfABoardOutsideTheImageIsUsedAsItIs) {
-  for (const BoardTarget& target : {BoardTarget(charuco), BoardTarget(april)}) {
+  for (const BoardTarget& target : {BoardTarget(charuco), BoardTarget(april_grid)}) {
     BoardCamera camera = usual_camera(target, 0.5);
     camera.t.x() += 0.28;
     const bool tags = std::holds_alternative<AprilTagGrid>(target);
     const BoardDetection found = detect(
-        photograph(tags ? draw(april, 2) : draw(charuco, cv::aruco::DICT_5X5_100), camera), target);
+        photograph(tags ? draw(april_grid, 2) : draw(charuco, cv::aruco::DICT_5X5_100), camera),
+        target);
     const std::size_t all = target_points(target).size();
     EXPECT_GE(found.ids.size(), 8u) << found.reason;
     EXPECT_LT(found.ids.size(), 3 * all / 4);
@@ -215,7 +218,8 @@ TEST_F(RenderedBoards, WrongBoardsAreRefusedWithARemedy) {
     EXPECT_TRUE(found.ids.empty());
     return found.reason;
   };
-  const cv::Mat chess = photograph(draw(chessboard), usual_camera(chessboard, 0.4));
+  const cv::Mat chess =
+      photograph(draw(rendered_chessboard), usual_camera(rendered_chessboard, 0.4));
   for (const Chessboard& part : {Chessboard{8, 6}, Chessboard{9, 5}, Chessboard{7, 5}}) {
     EXPECT_NE(reason(chess, part).find("the board seems to have more inner corners than"),
               std::string::npos)
@@ -238,16 +242,17 @@ TEST_F(RenderedBoards, WrongBoardsAreRefusedWithARemedy) {
       reason(marked, CharucoBoard{8, 6, 0.04, 0.029, "7x7_50"}).find("none with a pattern of"),
       std::string::npos)
       << reason(marked, CharucoBoard{8, 6, 0.04, 0.029, "7x7_50"});
-  AprilTagGrid from_top = april;
+  AprilTagGrid from_top = april_grid;
   from_top.top_row_first = true;
-  const cv::Mat tags = photograph(draw(from_top, 2), usual_camera(april, 0.5));
-  EXPECT_NE(reason(tags, april).find("give --top-row-first"), std::string::npos)
-      << reason(tags, april);
+  const cv::Mat tags = photograph(draw(from_top, 2), usual_camera(april_grid, 0.5));
+  EXPECT_NE(reason(tags, april_grid).find("give --top-row-first"), std::string::npos)
+      << reason(tags, april_grid);
   EXPECT_EQ(detect(tags, from_top).ids.size(), 120u);
 }
 
 TEST_F(RenderedBoards, BoardOfMoreCornersThanSaidIsNoResult) {
-  const cv::Mat chess = photograph(draw(chessboard), usual_camera(chessboard, 0.4));
+  const cv::Mat chess =
+      photograph(draw(rendered_chessboard), usual_camera(rendered_chessboard, 0.4));
   save(chess, "left01.png");
   save(chess, "left02.png");
   try {
@@ -263,11 +268,11 @@ TEST_F(RenderedBoards, BoardOfMoreCornersThanSaidIsNoResult) {
 }
 
 TEST_F(RenderedBoards, TagsBeyondTheGridAreNamed) {
-  const cv::Mat tags = photograph(draw(april, 2), usual_camera(april, 0.5));
+  const cv::Mat tags = photograph(draw(april_grid, 2), usual_camera(april_grid, 0.5));
   const std::string files = save(tags).string();
   const auto complaint = [&](int columns, int rows) -> std::string {
     try {
-      detect_images({files}, AprilTagGrid{columns, rows, april.tag_m, april.spacing});
+      detect_images({files}, AprilTagGrid{columns, rows, april_grid.tag_m, april_grid.spacing});
     } catch (const Error& error) {
       return error.what();
     }
@@ -290,14 +295,17 @@ TEST_F(RenderedBoards, TagsBeyondTheGridAreNamed) {
   cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11), 27, 80,
                         tag, 2);
   tag.copyTo(stray(cv::Rect(30, tags.rows + 20, 80, 80)));
-  const BoardDetection seen = detect(stray, AprilTagGrid{6, 4, april.tag_m, april.spacing});
+  const BoardDetection seen =
+      detect(stray, AprilTagGrid{6, 4, april_grid.tag_m, april_grid.spacing});
   EXPECT_EQ(std::count(seen.ids_beyond.begin(), seen.ids_beyond.end(), 27), 0);
 }
 
 TEST_F(RenderedBoards, ReasonsAreMeasured) {
-  const BoardCamera camera = usual_camera(chessboard, 0.4);
-  const cv::Mat sharp = photograph(draw(chessboard), camera);
-  const auto reason = [&](const cv::Mat& image) { return detect(image, chessboard).reason; };
+  const BoardCamera camera = usual_camera(rendered_chessboard, 0.4);
+  const cv::Mat sharp = photograph(draw(rendered_chessboard), camera);
+  const auto reason = [&](const cv::Mat& image) {
+    return detect(image, rendered_chessboard).reason;
+  };
   EXPECT_EQ(reason(cv::Mat(480, 640, CV_8U, 255.0)),
             "no 9x6 board found; over-exposed: 100 % of the pixels are white");
   EXPECT_EQ(reason(cv::Mat(480, 640, CV_8U, 120.0)),
@@ -310,21 +318,22 @@ TEST_F(RenderedBoards, ReasonsAreMeasured) {
       << reason(blurred);
   BoardCamera aside = camera;
   aside.t.x() += 0.12;
-  EXPECT_NE(reason(photograph(draw(chessboard), aside))
+  EXPECT_NE(reason(photograph(draw(rendered_chessboard), aside))
                 .find("the board is cut off by the image's border"),
             std::string::npos)
-      << reason(photograph(draw(chessboard), aside));
+      << reason(photograph(draw(rendered_chessboard), aside));
 }
 
 TEST_F(RenderedBoards, DamagedFilesAreNamed) {
-  const cv::Mat image = photograph(draw(chessboard), usual_camera(chessboard, 0.4));
+  const cv::Mat image =
+      photograph(draw(rendered_chessboard), usual_camera(rendered_chessboard, 0.4));
   const auto error_output = [&](const std::string& name, auto damage) {
     const auto file = save(image, name);
     std::string bytes = read_whole(file);
     damage(bytes);
     write_atomically(file, bytes);
     try {
-      detect_board(file, chessboard);
+      detect_board(file, rendered_chessboard);
     } catch (const Error& error) {
       return std::string(error.what()).substr(file.string().size());
     }
@@ -350,12 +359,12 @@ TEST_F(RenderedBoards, DamagedFilesAreNamed) {
 }
 
 TEST_F(RenderedBoards, ImagesOfAnotherSizeAreAnError) {
-  const BoardCamera camera = usual_camera(chessboard, 0.4);
-  const cv::Mat image = photograph(draw(chessboard), camera);
+  const BoardCamera camera = usual_camera(rendered_chessboard, 0.4);
+  const cv::Mat image = photograph(draw(rendered_chessboard), camera);
   save(image, "left01.png");
   save(image(cv::Rect(0, 0, 630, 480)), "left02.png");
   try {
-    detect_images({(folder_ / "left*.png").string()}, chessboard);
+    detect_images({(folder_ / "left*.png").string()}, rendered_chessboard);
     FAIL() << "no Error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("its size 630x480 differs from the images before it"),
@@ -365,16 +374,16 @@ TEST_F(RenderedBoards, ImagesOfAnotherSizeAreAnError) {
 }
 
 /// Views by a pair, some of them in part, and what they were made with.
-struct RenderedPair {
+struct BoardPair {
   BoardObservations observations;
   ImageDetections found;
   Eigen::Vector3d right_t;
   double f_px = 0;
 };
 
-RenderedPair photograph_pair(const std::filesystem::path& folder) {
-  RenderedPair pair;
-  const test::BoardDrawing drawing = test::draw(april, 2);
+BoardPair photograph_pair(const std::filesystem::path& folder) {
+  BoardPair pair;
+  const test::BoardDrawing drawing = test::draw(april_grid, 2);
   pair.right_t = {-0.12, 0, 0};
   int frame = 0;
   for (const auto& [tilt_x, tilt_y, x] : {std::tuple{0.5, 0.1, 0.0},
@@ -385,7 +394,7 @@ RenderedPair photograph_pair(const std::filesystem::path& folder) {
                                           {-0.3, -0.4, -0.05},
                                           {0.3, 0.5, 0.06}}) {
     BoardCamera camera =
-        camera_before(middle_of(april), 0.6, std::numbers::pi + tilt_x, tilt_y, 0.2);
+        camera_before(middle_of(april_grid), 0.6, std::numbers::pi + tilt_x, tilt_y, 0.2);
     camera.t.x() += x;
     ++frame;
     for (const std::string side : {"left", "right"}) {
@@ -396,12 +405,12 @@ RenderedPair photograph_pair(const std::filesystem::path& folder) {
     }
   }
   pair.found = detect_images({(folder / "left*.png").string(), (folder / "right*.png").string()},
-                             BoardTarget(april));
+                             BoardTarget(april_grid));
   return pair;
 }
 
 TEST_F(RenderedBoards, PartialViewsCalibrateFromImagesAloneAndSurviveTheCornersFile) {
-  const RenderedPair pair = photograph_pair(folder_);
+  const BoardPair pair = photograph_pair(folder_);
   const BoardObservations& before = pair.found.observations;
   ASSERT_EQ(before.views.size(), 14u);
   EXPECT_TRUE(std::any_of(before.views.begin(), before.views.end(),
@@ -411,8 +420,8 @@ TEST_F(RenderedBoards, PartialViewsCalibrateFromImagesAloneAndSurviveTheCornersF
   EXPECT_NEAR((estimate.rig.T_camera_first[1].t - pair.right_t).norm(), 0, 3e-4);
   EXPECT_LT(estimate.calibration->rms_px, 0.1);
 
-  write_corners(pair.found, april, folder_ / "corners.vnl");
-  const BoardObservations after = read_corners(folder_ / "corners.vnl", april, {{640, 480}});
+  write_corners(pair.found, april_grid, folder_ / "corners.vnl");
+  const BoardObservations after = read_corners(folder_ / "corners.vnl", april_grid, {{640, 480}});
   ASSERT_EQ(after.views.size(), before.views.size());
   for (std::size_t i = 0; i < after.views.size(); ++i) {
     EXPECT_EQ(after.views[i].ids, before.views[i].ids);

@@ -89,9 +89,10 @@ TEST(Calibrate, TheCovarianceOfFewFramesIsNowhereBelowTheBound) {
       const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 19, .frames = frames});
       const RigEstimate estimate = calibrate(board.observations, options);
       ASSERT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
-      const internal::Cholesky bound(*estimate.covariance_mvb);
+      const vernier::internal::Cholesky bound(*estimate.covariance_mvb);
       const Eigen::MatrixXd half = bound.solve_lower(estimate.covariance->matrix).transpose();
-      const Eigen::VectorXd ratios = internal::symmetric_eigenvalues(bound.solve_lower(half));
+      const Eigen::VectorXd ratios =
+          vernier::internal::symmetric_eigenvalues(bound.solve_lower(half));
       EXPECT_GT(ratios.minCoeff(), 1 - 1e-6) << frames << known;
     }
   }

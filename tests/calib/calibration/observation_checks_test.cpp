@@ -28,7 +28,7 @@ using namespace vernier::internal;
 
 namespace {
 
-std::string complaint_of(BoardObservations observations) {
+std::string complaint_about(BoardObservations observations) {
   return test::error_message([&] {
     check_and_sort(observations);
     check_observations(observations);
@@ -60,7 +60,7 @@ TEST_F(ObservationChecks, GoodOnesPassInSilence) {
 TEST_F(ObservationChecks, OneMirroredViewIsNamed) {
   test::mirror(good_.views[5], 9);
   good_.views[5].image = "right02.png";
-  EXPECT_EQ(complaint_of(good_),
+  EXPECT_EQ(complaint_about(good_),
             "frame 2, camera 1 (right02.png): the board is mirrored against the other 39 views; "
             "corners must run row by row, x right and y down as seen: flip the mirrored images or "
             "reverse their numbering");
@@ -70,9 +70,9 @@ TEST_F(ObservationChecks, AMirroredCameraIsNamed) {
   for (BoardView& view : good_.views) {
     if (view.camera == 1) test::mirror(view, 9);
   }
-  EXPECT_NE(complaint_of(good_).find("camera 1: the board is mirrored in all its 20 views"),
+  EXPECT_NE(complaint_about(good_).find("camera 1: the board is mirrored in all its 20 views"),
             std::string::npos)
-      << complaint_of(good_);
+      << complaint_about(good_);
 }
 
 TEST_F(ObservationChecks, ABoardMirroredEverywhereIsDoubted) {
@@ -105,13 +105,13 @@ TEST_F(ObservationChecks, AGridOfTagsWithItsYUpwardsIsNoMirroredBoard) {
 
 TEST_F(ObservationChecks, AMirroredImageIsNamedAsMirroredNumbering) {
   for (auto& pixel : good_.views[0].pixels_px) pixel.x() = 639 - pixel.x();
-  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0: the board is mirrored"),
+  EXPECT_NE(complaint_about(good_).find("frame 0, camera 0: the board is mirrored"),
             std::string::npos);
 }
 
 TEST_F(ObservationChecks, AViewCountedTwiceIsNamed) {
   test::append_frame(good_, 4, 20);
-  EXPECT_EQ(complaint_of(good_),
+  EXPECT_EQ(complaint_about(good_),
             "frame 20, camera 0: it is the same view as frame 4 (their corners differ by 0 px), "
             "and counting it twice would understate the uncertainty; remove one of the "
             "two");
@@ -131,16 +131,16 @@ TEST_F(ObservationChecks, ARepeatedViewWithItsOwnNoiseIsAWarning) {
 
 TEST_F(ObservationChecks, LeftAndRightFromOneImageAreNamed) {
   good_.views[7].pixels_px = good_.views[6].pixels_px;
-  EXPECT_EQ(complaint_of(good_),
+  EXPECT_EQ(complaint_about(good_),
             "frame 3, camera 0 and camera 1: the images are the same (their corners differ by 0 "
             "px); give the other camera's own image");
 }
 
 TEST_F(ObservationChecks, RowsAndColumnsExchangedAreNamed) {
   good_.target_m = target_points(Chessboard{6, 9, 0.025});
-  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0: its corners do not fit a flat board"),
+  EXPECT_NE(complaint_about(good_).find("frame 0, camera 0: its corners do not fit a flat board"),
             std::string::npos);
-  EXPECT_NE(complaint_of(good_).find("rows and columns of the board are not exchanged"),
+  EXPECT_NE(complaint_about(good_).find("rows and columns of the board are not exchanged"),
             std::string::npos);
 }
 
@@ -177,7 +177,7 @@ TEST_F(ObservationChecks, TiltedBoardsBeforeAWideLensPass) {
     }
   }
   EXPECT_GT(seen.views.size(), 20u);
-  EXPECT_EQ(complaint_of(seen), "");
+  EXPECT_EQ(complaint_about(seen), "");
 }
 
 // So near that the board reaches from the middle of the image to 85 degrees: the residual of a
@@ -190,7 +190,7 @@ TEST_F(ObservationChecks, ABoardThatAWideLensBendsByHalfASquarePasses) {
     for (const BoardView& view : seen.views) {
       bent += board_homography(seen.target_m, view).rms_px > 18;
     }
-    EXPECT_EQ(complaint_of(seen), "");
+    EXPECT_EQ(complaint_about(seen), "");
   }
   EXPECT_GT(bent, 1);
 }
@@ -248,7 +248,7 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
     view.ids = ids;
     view.pixels_px.clear();
     for (const int id : ids) view.pixels_px.push_back(whole.pixels_px[id]);
-    return complaint_of(good_);
+    return complaint_about(good_);
   };
   const std::string expected =
       "frame 5, camera 1 (right05.png): all its corners, or all but one, are collinear, which does "
@@ -263,7 +263,7 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
 
 TEST_F(ObservationChecks, ATargetThatIsNotFlatIsRefused) {
   for (std::size_t i = 0; i < good_.target_m.size(); ++i) good_.target_m[i].z() = 0.02 * (i % 4);
-  EXPECT_EQ(complaint_of(good_).find("target: its corners are not in the plane z = 0"), 0u);
+  EXPECT_EQ(complaint_about(good_).find("target: its corners are not in the plane z = 0"), 0u);
 }
 
 TEST_F(ObservationChecks, UnpairedFramesAreCountedAndSaid) {

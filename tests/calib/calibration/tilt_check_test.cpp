@@ -23,7 +23,7 @@ using namespace vernier::internal;
 
 namespace {
 
-std::string complaint_of(BoardObservations observations) {
+std::string tilt_complaint(BoardObservations observations) {
   check_and_sort(observations);
   const std::vector<CameraModel> models(observations.size_px.size(), Radial1{});
   const BoardState start = initial_state(observations, models);
@@ -41,7 +41,7 @@ TEST_P(BoardTilts, BoardsAllParallelToTheImageAreNamed) {
   const auto flat =
       simulate_board(test::stereo_rig(), {}, {.seed = GetParam(), .frames = 12, .tilt_rad = 0.0});
   // simulate_board turns the board about the axis too, which is no tilt
-  const std::string error_output = complaint_of(flat.observations);
+  const std::string error_output = tilt_complaint(flat.observations);
   EXPECT_NE(error_output.find(
                 ": every board is parallel to the image, or nearly so, which leaves the "
                 "focal length undetermined; tilt the board by 20 to 45 degrees about both axes"),
@@ -53,14 +53,15 @@ TEST_P(BoardTilts, TwoTiltsAreTooFew) {
   const auto two =
       test::board_at_tilts(test::stereo_rig(), {}, GetParam(), {{0.4, 0.1, 0}, {-0.1, -0.5, 0.2}});
   EXPECT_EQ(
-      complaint_of(two).find("camera 0: its 12 views show the board at only 2 distinct tilts"), 0u)
-      << complaint_of(two);
+      tilt_complaint(two).find("camera 0: its 12 views show the board at only 2 distinct tilts"),
+      0u)
+      << tilt_complaint(two);
 }
 
 TEST_P(BoardTilts, ThreeTiltsAreEnough) {
   const auto three = test::board_at_tilts(test::stereo_rig(), {}, GetParam(),
                                           {{0.4, 0.1, 0}, {-0.1, -0.5, 0.2}, {-0.3, 0.3, 0}});
-  EXPECT_EQ(complaint_of(three), "");
+  EXPECT_EQ(tilt_complaint(three), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BoardTilts, testing::Range<std::uint64_t>(300, 320));

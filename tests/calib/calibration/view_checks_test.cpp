@@ -30,14 +30,14 @@ using namespace vernier::internal;
 
 namespace {
 
-ObservationDiagnosis diagnosis_of(BoardObservations observations) {
+ObservationDiagnosis view_diagnosis(BoardObservations observations) {
   check_and_sort(observations);
   const std::vector<CameraModel> models(observations.size_px.size(), Radial1{});
   return check_views(observations, initial_state(observations, models));
 }
 
-std::string complaint_of(const BoardObservations& observations) {
-  return test::error_message([&] { diagnosis_of(observations); });
+std::string view_complaint(const BoardObservations& observations) {
+  return test::error_message([&] { view_diagnosis(observations); });
 }
 
 /// Every defect on sets of two sizes of noise and several seeds.
@@ -52,7 +52,7 @@ class ViewChecks : public testing::TestWithParam<std::uint64_t> {
 };
 
 TEST_P(ViewChecks, GoodOnesPassInSilence) {
-  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  const ObservationDiagnosis diagnosis = view_diagnosis(good_);
   EXPECT_TRUE(diagnosis.trust_warnings.empty());
   EXPECT_TRUE(diagnosis.frame_doubts.empty());
   EXPECT_TRUE(diagnosis.warnings.empty());
@@ -62,7 +62,7 @@ TEST_P(ViewChecks, OneTurnedViewIsNamed) {
   BoardView& view = test::view_of(good_, 7, 1);
   test::half_turn(view);
   view.image = "right07.png";
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(
       error_output.find("frame 7, camera 1 (right07.png): its corners are numbered half a turn "
                         "(180 degrees) away from those of camera 0"),
@@ -74,7 +74,7 @@ TEST_P(ViewChecks, OneTurnedViewIsNamed) {
 
 TEST_P(ViewChecks, SeveralTurnedViewsOfTheFirstCameraAreCounted) {
   for (const int frame : {2, 5, 11}) test::half_turn(test::view_of(good_, frame, 0));
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(error_output.find("frame 2, camera 0: its corners are numbered half a turn"), 0u)
       << error_output;
   EXPECT_NE(error_output.find("(and 2 more frames like it)"), std::string::npos) << error_output;
@@ -85,7 +85,7 @@ TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
     if (view.camera == 1) test::half_turn(view);
   }
   EXPECT_EQ(
-      complaint_of(good_),
+      view_complaint(good_),
       "camera 1: its corners are numbered half a turn (180 degrees) away from those of camera "
       "0 in 13 of 13 frames; reverse the order of the corners in one of the two cameras, or turn "
       "its images by "
@@ -94,13 +94,13 @@ TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
 
 TEST_P(ViewChecks, BothCamerasTurnedInAFrameIsNoFault) {
   for (const int camera : {0, 1}) test::half_turn(test::view_of(good_, 7, camera));
-  EXPECT_TRUE(diagnosis_of(good_).trust_warnings.empty());
+  EXPECT_TRUE(view_diagnosis(good_).trust_warnings.empty());
 }
 
 TEST_P(ViewChecks, SwappedViewsAreNamed) {
   test::view_of(good_, 3, 0).image = "left03.png";
   for (const int frame : {3, 8}) test::exchange(good_, frame);
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(
       error_output.find("frame 3, camera 0 (left03.png) and frame 3, camera 1: left and right "
                         "are swapped against the other frames"),
@@ -113,7 +113,7 @@ TEST_P(ViewChecks, SwappedViewsAreNamed) {
 
 TEST_P(ViewChecks, CamerasExchangedThroughoutAreDoubted) {
   for (int frame = 0; frame < 13; ++frame) test::exchange(good_, frame);
-  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  const ObservationDiagnosis diagnosis = view_diagnosis(good_);
   ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
   EXPECT_EQ(diagnosis.trust_warnings[0].find("camera 1 (\"right\") is 0."), 0u)
       << diagnosis.trust_warnings[0];
@@ -127,7 +127,7 @@ TEST_P(ViewChecks, ImagesPairedOneFrameLateAreNamed) {
   for (BoardView& view : good_.views) {
     if (view.camera == 1) ++view.frame;
   }
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(error_output.find("cameras 0 and 1: their images are paired wrongly"), 0u)
       << error_output;
   EXPECT_NE(error_output.find("13 of 13 do when camera 1's images are taken 1 frame later"),
@@ -139,7 +139,7 @@ TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
   for (BoardView& view : good_.views) {
     if (view.camera == 1) view.frame = view.frame * 5 % 13;
   }
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(error_output.find("cameras 0 and 1: only "), 0u) << error_output;
   EXPECT_NE(
       error_output.find("of 13 frames agree on the pose between the two: their images are not "
@@ -150,7 +150,7 @@ TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
 
 TEST_P(ViewChecks, ImagesExchangedBetweenTwoFramesAreNamed) {
   std::swap(test::view_of(good_, 2, 1).pixels_px, test::view_of(good_, 9, 1).pixels_px);
-  const std::string error_output = complaint_of(good_);
+  const std::string error_output = view_complaint(good_);
   EXPECT_EQ(
       error_output.find("frame 2, camera 1 and frame 9, camera 1: each belongs to the other frame"),
       0u)
@@ -160,7 +160,7 @@ TEST_P(ViewChecks, ImagesExchangedBetweenTwoFramesAreNamed) {
 TEST_P(ViewChecks, OneFrameTakenAtOtherTimesIsDoubted) {
   test::view_of(good_, 6, 1).pixels_px = test::view_of(good_, 5, 1).pixels_px;
   for (auto& p : test::view_of(good_, 6, 1).pixels_px) p.x() += 1;  // not the same view
-  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  const ObservationDiagnosis diagnosis = view_diagnosis(good_);
   ASSERT_EQ(diagnosis.frame_doubts.size(), 1u);
   const auto& [frame, text] = diagnosis.frame_doubts[0];
   EXPECT_EQ(frame, 6);

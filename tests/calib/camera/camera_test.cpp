@@ -109,8 +109,8 @@ TEST(CameraWithoutParameters, IsAnErrorThatNamesIt) {
   EXPECT_EQ(message([&] { parameters(Rig{{camera}, {Pose{}}}); }), words);
   const Rig rig{{camera, camera}, {Pose{}, Pose{}}};
   EXPECT_EQ(message([&] { retract(rig, Eigen::VectorXd::Zero(16)); }), words);
-  EXPECT_EQ(message([&] { internal::unobservable_directions(rig, {}); }), words);
-  EXPECT_EQ(message([&] { internal::resized({.rig = rig}, {320, 240}); }), words);
+  EXPECT_EQ(message([&] { vernier::internal::unobservable_directions(rig, {}); }), words);
+  EXPECT_EQ(message([&] { vernier::internal::resized({.rig = rig}, {320, 240}); }), words);
 }
 
 TEST(CameraWithoutParameters, NorMayItHaveTooMany) {

@@ -63,7 +63,7 @@ struct RoundTrip {
   int cameras;
 };
 
-class EveryModel : public testing::TestWithParam<RoundTrip> {
+class ConvertedModel : public testing::TestWithParam<RoundTrip> {
  protected:
   Rig rig() const { return rig_of_cameras(camera_model(GetParam().model), GetParam().cameras); }
   bool model_is(const std::string& name) const { return GetParam().model == name; }
@@ -78,11 +78,14 @@ std::vector<RoundTrip> round_trips() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Convert, EveryModel, testing::ValuesIn(round_trips()), [](const auto& p) {
-  return p.param.model + "_" + std::to_string(p.param.cameras);
-});
+INSTANTIATE_TEST_SUITE_P(Convert,
+                         ConvertedModel,
+                         testing::ValuesIn(round_trips()),
+                         [](const auto& p) {
+                           return p.param.model + "_" + std::to_string(p.param.cameras);
+                         });
 
-TEST_P(EveryModel, Mrcal) {
+TEST_P(ConvertedModel, Mrcal) {
   if (model_is("fisheye4")) {
     EXPECT_EQ(error_message([&] { mrcal_cameramodels(rig()); }),
               "camera \"left\": mrcal has no lens model like fisheye4; calibrate with opencv8, or "
@@ -93,7 +96,7 @@ TEST_P(EveryModel, Mrcal) {
   expect_equal(read_mrcal_cameramodels(files).rig, rig());
 }
 
-TEST_P(EveryModel, OpenCv) {
+TEST_P(ConvertedModel, OpenCv) {
   const auto whole = folder_.write(opencv_calibration(rig()));
   ASSERT_EQ(whole.size(), 1u);
   expect_equal(read_opencv_calibration(whole).rig, rig());
@@ -104,7 +107,7 @@ TEST_P(EveryModel, OpenCv) {
   EXPECT_TRUE(read.notes.empty());
 }
 
-TEST_P(EveryModel, Kalibr) {
+TEST_P(ConvertedModel, Kalibr) {
   if (model_is("opencv5") || model_is("opencv8")) {
     EXPECT_NE(error_message([&] {
                 kalibr_camchain(rig());
@@ -115,7 +118,7 @@ TEST_P(EveryModel, Kalibr) {
   expect_equal(read_kalibr_camchain(folder_.write(kalibr_camchain(rig()))[0]).rig, rig());
 }
 
-TEST_P(EveryModel, Ros) {
+TEST_P(ConvertedModel, Ros) {
   const auto files = folder_.write(ros_files(rig()));
   if (GetParam().cameras == 3) {
     EXPECT_NE(error_message([&] { read_ros_camera_info(files); }).find("has no poses"),
@@ -125,7 +128,7 @@ TEST_P(EveryModel, Ros) {
   expect_equal(read_ros_camera_info(files).rig, rig());
 }
 
-TEST_P(EveryModel, Colmap) {
+TEST_P(ConvertedModel, Colmap) {
   const Rig before = rig();
   const auto files = folder_.write(colmap_cameras(before));
   expect_equal(read_colmap_cameras(folder_.path()).rig, before);  // rig_config.json
@@ -133,7 +136,7 @@ TEST_P(EveryModel, Colmap) {
   expect_equal(read_colmap_cameras(files[0]).rig, before);  // images.txt
 }
 
-TEST_P(EveryModel, RigJson) {
+TEST_P(ConvertedModel, RigJson) {
   EXPECT_EQ(parse_rig(format_rig({rig(), {}, {}, {}, {}, {}}), "rig.json")
                 .estimate.rig.cameras[0]
                 .parameters,

@@ -35,7 +35,7 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double sigma_px = 0.1;
+constexpr double mrcal_sigma_px = 0.1;
 const std::filesystem::path script = VERNIER_SOURCE_DIR "/python/mrcal_uncertainty.py";
 
 /// A rig of one to three cameras with this model; `scale` enlarges the pictures.
@@ -63,7 +63,7 @@ SimulatedBoard board_of(const CameraModel& model, int cameras, int scale) {
   const bool wide = std::holds_alternative<OpenCv8>(model);
   return simulate_board(
       rig_of(model, cameras, scale), {10, 8, 0.06},
-      {.seed = 3, .frames = 24, .pixel_sigma_px = sigma_px, .distance_m = wide ? 0.6 : 0.9});
+      {.seed = 3, .frames = 24, .pixel_sigma_px = mrcal_sigma_px, .distance_m = wide ? 0.6 : 0.9});
 }
 
 void expect_agreement(const MrcalComparison& difference) {
@@ -89,12 +89,12 @@ TEST_P(AgainstMrcal, ParametersAndCovariancesAgree) {
   const RefinedMinimum ours =
       refine_minimum(observations, minimise_reprojection(observations, start));
   ASSERT_TRUE(ours.converged);
-  const MrcalCheck check = check_against_mrcal(observations, start, ours, sigma_px);
+  const MrcalCheck check = check_against_mrcal(observations, start, ours, mrcal_sigma_px);
   expect_agreement(check.comparison);
   EXPECT_LT(check.solution.stopped_short_sigma, 1e-3);
 
   const UncertaintyComparison propagated =
-      compare_uncertainty(script, observations, ours, sigma_px);
+      compare_uncertainty(script, observations, ours, mrcal_sigma_px);
   if (!propagated.absent.empty()) GTEST_SKIP() << propagated.absent;
   EXPECT_GE(propagated.projections, 150 * cameras);
   EXPECT_LE(propagated.max_projection_covariance_diff, projection_covariance_gate)
@@ -131,9 +131,9 @@ TEST(Mrcal, AgreesWhereCornersAreMissing) {
   const BoardState start = initial_state(board.observations, {OpenCv4{}, OpenCv4{}});
   const RefinedMinimum ours =
       refine_minimum(board.observations, minimise_reprojection(board.observations, start));
-  expect_agreement(check_against_mrcal(board.observations, start, ours, sigma_px).comparison);
+  expect_agreement(check_against_mrcal(board.observations, start, ours, mrcal_sigma_px).comparison);
   const UncertaintyComparison propagated =
-      compare_uncertainty(script, board.observations, ours, sigma_px);
+      compare_uncertainty(script, board.observations, ours, mrcal_sigma_px);
   if (!propagated.absent.empty()) GTEST_SKIP() << propagated.absent;
   EXPECT_LE(propagated.max_projection_covariance_diff, projection_covariance_gate);
 }
@@ -152,11 +152,11 @@ TEST(Mrcal, AgreesWhereParametersAreHeld) {
     const RefinedMinimum ours = refine_minimum(board.observations, board.truth, held);
     ASSERT_TRUE(ours.converged);
     const MrcalCheck check =
-        check_against_mrcal(board.observations, board.truth, ours, sigma_px, held);
+        check_against_mrcal(board.observations, board.truth, ours, mrcal_sigma_px, held);
     SCOPED_TRACE(names[0]);
     expect_agreement(check.comparison);
     const UncertaintyComparison propagated =
-        compare_uncertainty(script, board.observations, ours, sigma_px, held);
+        compare_uncertainty(script, board.observations, ours, mrcal_sigma_px, held);
     if (!propagated.absent.empty()) continue;
     EXPECT_LE(propagated.max_projection_covariance_diff, projection_covariance_gate);
   }
@@ -167,14 +167,14 @@ TEST(Mrcal, ComparisonShowsADifference) {
   const SimulatedBoard board = board_of(Radial1{}, 2, 1);
   RefinedMinimum ours = refine_minimum(board.observations, board.truth);
   const MrcalSolution mrcals = mrcal_solve(board.observations, board.truth);
-  const Eigen::VectorXd sd = sigma_px * mrcals.unit_covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd sd = mrcal_sigma_px * mrcals.unit_covariance.diagonal().cwiseSqrt();
   ours.state.rig.cameras[1].parameters[2] += 1e-5 * sd[7];
-  MrcalComparison difference = compare(ours, mrcals, sigma_px);
+  MrcalComparison difference = compare(ours, mrcals, mrcal_sigma_px);
   EXPECT_NEAR(difference.max_parameter_diff_sigma, 1e-5, 1e-9);
   EXPECT_EQ(difference.worst_parameter, "right.cx");
   EXPECT_LE(difference.max_covariance_diff, covariance_gate);
   ours.unit_bound(2, 3) += 1e-6 * std::sqrt(ours.unit_bound(2, 2) * ours.unit_bound(3, 3));
-  difference = compare(ours, mrcals, sigma_px);
+  difference = compare(ours, mrcals, mrcal_sigma_px);
   EXPECT_NEAR(difference.max_covariance_diff, 1e-6, 1e-9);
   EXPECT_EQ(difference.worst_covariance, "left.cx, left.cy");
 }
@@ -267,15 +267,15 @@ TEST(Mrcal, AParameterThatIsNoNumberIsTheWorst) {
   const Eigen::MatrixXd G = mrcal_by_tangent(ours.state.rig);
   theirs.unit_covariance = G * ours.unit_bound * G.transpose();
   theirs.cost_px2 = ours.cost_px2;
-  EXPECT_LT(compare(ours, theirs, sigma_px).max_parameter_diff_sigma, parameter_gate_sigma);
+  EXPECT_LT(compare(ours, theirs, mrcal_sigma_px).max_parameter_diff_sigma, parameter_gate_sigma);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   theirs.state.rig.cameras[0].parameters[2] = nan;
-  MrcalComparison found = compare(ours, theirs, sigma_px);
+  MrcalComparison found = compare(ours, theirs, mrcal_sigma_px);
   EXPECT_TRUE(std::isnan(found.max_parameter_diff_sigma));
   EXPECT_EQ(found.worst_parameter, "left.cx");
   theirs.state = ours.state;
   theirs.unit_covariance(3, 3) = nan;
-  found = compare(ours, theirs, sigma_px);
+  found = compare(ours, theirs, mrcal_sigma_px);
   EXPECT_TRUE(std::isnan(found.max_parameter_diff_sigma));
   EXPECT_TRUE(std::isnan(found.max_covariance_diff));
 }
@@ -287,7 +287,7 @@ class Answer : public testing::Test {
     const std::filesystem::path file = folder_.path() / "script.py";
     std::ofstream(file) << "import json, math, runpy, sys\n" << lines;
     const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
-    return compare_uncertainty(file, board_.observations, ours, sigma_px);
+    return compare_uncertainty(file, board_.observations, ours, mrcal_sigma_px);
   }
   std::string error_output(const std::string& lines) {
     return test::error_message([&] { compared(lines); });
@@ -339,7 +339,7 @@ TEST_F(Answer, AScriptThatFailsIsSaidAndAMissingOneIsAbsent) {
             std::string::npos);
   const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
   for (const char* missing : {"/nowhere/script.py", "script.py"}) {
-    EXPECT_NE(compare_uncertainty(missing, board_.observations, ours, sigma_px)
+    EXPECT_NE(compare_uncertainty(missing, board_.observations, ours, mrcal_sigma_px)
                   .absent.find(std::string("the script ") + missing + " is missing"),
               std::string::npos);
   }

@@ -30,14 +30,14 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double sigma_px = 0.2;
+constexpr double planned_sigma_px = 0.2;
 
-SimulatedBoard views(int frames, std::uint64_t seed = 11) {
+SimulatedBoard views_of_seed(int frames, std::uint64_t seed = 11) {
   return simulate_board(test::stereo_rig(), {},
-                        {.seed = seed, .frames = frames, .pixel_sigma_px = sigma_px});
+                        {.seed = seed, .frames = frames, .pixel_sigma_px = planned_sigma_px});
 }
 
-RigEstimate calibrated(int frames) { return calibrate(views(frames).observations); }
+RigEstimate calibrated(int frames) { return calibrate(views_of_seed(frames).observations); }
 
 /// One parameter, a view of information 1: sd = noise / sqrt(n).
 ViewKnowledge counting(int taken, double noise_px = 1, double log_sd = 0) {
@@ -156,7 +156,7 @@ TEST(ViewsNeeded, FurtherViewsAreSeenByAsManyCamerasAsThoseSoFar) {
 }
 
 TEST(PosePopulation, ViewsHaveTheSpreadOfThePosesTheyAreLike) {
-  const SimulatedBoard many = views(200);
+  const SimulatedBoard many = views_of_seed(200);
   const PosePopulation population =
       pose_population(many.truth.T_first_board, many.observations.target_m);
   const auto drawn = population_views(many.truth.rig, many.observations.target_m, {0, 0},
@@ -174,7 +174,7 @@ TEST(PosePopulation, ViewsHaveTheSpreadOfThePosesTheyAreLike) {
 }
 
 TEST(PosePopulation, FewPosesAreRedrawnMoreThanMany) {
-  const SimulatedBoard all = views(100);
+  const SimulatedBoard all = views_of_seed(100);
   const auto spread = [&](int poses) {
     const std::vector<Pose> some(all.truth.T_first_board.begin(),
                                  all.truth.T_first_board.begin() + poses);
@@ -194,10 +194,10 @@ TEST(SmoothNoise, IsTheNoiseWhereItIsWhiteAndMoreWhereItIsNot) {
   double sum = 0, squares = 0;
   constexpr int sets = 40;
   for (int i = 0; i < sets; ++i) {
-    const RigEstimate now = calibrate(views(6, 100 + std::uint64_t(i)).observations);
+    const RigEstimate now = calibrate(views_of_seed(6, 100 + std::uint64_t(i)).observations);
     const BoardState state{now.rig, now.evidence->frames, now.evidence->T_first_board, {0, 0}};
-    const double log_sd =
-        std::log(smooth_noise(now.evidence->observations, state, parameters).sd_px / sigma_px);
+    const double log_sd = std::log(
+        smooth_noise(now.evidence->observations, state, parameters).sd_px / planned_sigma_px);
     sum += log_sd;
     squares += log_sd * log_sd;
   }
@@ -205,7 +205,7 @@ TEST(SmoothNoise, IsTheNoiseWhereItIsWhiteAndMoreWhereItIsNot) {
   EXPECT_LT(std::abs(mean), 4 * sd / std::sqrt(sets) + 0.01);
   EXPECT_LT(sd, 0.08);
   // A bend of each image of its own.
-  BoardObservations bent = views(8).observations;
+  BoardObservations bent = views_of_seed(8).observations;
   for (BoardView& view : bent.views) {
     RandomStream draws({.seed = 5,
                         .trial = static_cast<std::uint32_t>(view.camera),

@@ -27,8 +27,8 @@ using namespace vernier::internal;
 
 namespace {
 
-const std::vector<std::string> model_names{"pinhole", "radial1", "opencv4",
-                                           "opencv5", "opencv8", "fisheye4"};
+const std::vector<std::string> tested_models{"pinhole", "radial1", "opencv4",
+                                             "opencv5", "opencv8", "fisheye4"};
 
 Rig rig_of(const std::string& left, const std::string& right) {
   Rig rig = test::stereo_rig(camera_model(left));
@@ -37,7 +37,7 @@ Rig rig_of(const std::string& left, const std::string& right) {
 }
 
 TEST(Epipolar, ResidualIsTheTextbooksForEveryModel) {
-  for (const std::string& name : model_names) {
+  for (const std::string& name : tested_models) {
     const Rig rig = rig_of(name, name);
     const PairObservations pairs =
         simulate_pairs(rig, 1, 0, {.image_pairs = 3, .pairs_per_image = 9});
@@ -62,8 +62,8 @@ TEST(Epipolar, ResidualIsTheBundlesToSecondOrder) {
 
 /// Gradient of one pair's residual from the sums: Σ r J and r.
 TEST(Epipolar, GradientWithItsWeightIsTheNumericDerivativeForEveryPairOfModels) {
-  for (const std::string& left : model_names) {
-    for (const std::string& right : model_names) {
+  for (const std::string& left : tested_models) {
+    for (const std::string& right : tested_models) {
       const Rig rig = rig_of(left, right);
       const PairObservations pairs =
           simulate_pairs(rig, 3, 0, {.image_pairs = 4, .pairs_per_image = 1, .pixel_sigma_px = 1});

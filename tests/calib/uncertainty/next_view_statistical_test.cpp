@@ -26,15 +26,15 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double sigma_px = 0.2;
-constexpr int first_frames = 6;
+constexpr double drawn_sigma_px = 0.2;
+constexpr int views_before = 6;
 
 /// Depth errors at 5 m over calibrations of the same views with fresh noise.
 class DepthTrials {
  public:
   DepthTrials()
       : first_(simulate_board(
-            truth_, {}, {.seed = 31, .frames = first_frames, .pixel_sigma_px = 0})) {}
+            truth_, {}, {.seed = 31, .frames = views_before, .pixel_sigma_px = 0})) {}
 
   const Rig& truth() const { return truth_; }
   const SimulatedBoard& first() const { return first_; }
@@ -42,7 +42,7 @@ class DepthTrials {
   /// Root mean square error of the depth at 5 m over `trials` with these views added.
   double rms(const std::vector<Pose>& added, int trials) const {
     BoardObservations exact = first_.observations;
-    for (std::size_t k = 0; k < added.size(); ++k) append(exact, added[k], first_frames + int(k));
+    for (std::size_t k = 0; k < added.size(); ++k) append(exact, added[k], views_before + int(k));
     const Eigen::Vector3d x(0, 0, 5);
     const Eigen::Vector2d left = project(truth_.cameras[0], x);
     const Eigen::Vector2d right = project(truth_.cameras[1], truth_.T_camera_first[1] * x);
@@ -53,12 +53,12 @@ class DepthTrials {
         RandomStream draws({.seed = 77,
                             .trial = static_cast<std::uint32_t>(trial),
                             .feature = static_cast<std::uint32_t>(64 * view.frame + view.camera)});
-        for (auto& q : view.pixels_px) q += sigma_px * Eigen::Vector2d(draws.normals(2));
+        for (auto& q : view.pixels_px) q += drawn_sigma_px * Eigen::Vector2d(draws.normals(2));
       }
-      const Rig rig =
-          calibrate(noisy,
-                    {.pixel_sigma_px = sigma_px, .reject_outliers = false, .white_noise = true})
-              .rig;
+      const Rig rig = calibrate(noisy, {.pixel_sigma_px = drawn_sigma_px,
+                                        .reject_outliers = false,
+                                        .white_noise = true})
+                          .rig;
       squares += std::pow(triangulated_depth_m(rig, {left, right}) - 5, 2);
     }
     return std::sqrt(squares / trials);
@@ -83,12 +83,12 @@ class DepthTrials {
 };
 
 std::vector<Pose> advised(const DepthTrials& trials, int views) {
-  const RigEstimate now =
-      calibrate(trials.first().observations, {.pixel_sigma_px = sigma_px, .white_noise = true});
-  const ViewAdvice advice =
-      advise_views(ScaledDecomposition(*now.covariance).factor(),
-                   candidate_views(now.rig, trials.first().observations.target_m, {0, 0}, sigma_px),
-                   target_quantity(now.rig, "depth", 5), {.views = views, .more = 1});
+  const RigEstimate now = calibrate(trials.first().observations,
+                                    {.pixel_sigma_px = drawn_sigma_px, .white_noise = true});
+  const ViewAdvice advice = advise_views(
+      ScaledDecomposition(*now.covariance).factor(),
+      candidate_views(now.rig, trials.first().observations.target_m, {0, 0}, drawn_sigma_px),
+      target_quantity(now.rig, "depth", 5), {.views = views, .more = 1});
   std::vector<Pose> poses;
   for (const ScoredView& view : advice.views) poses.push_back(view.placement.T_first_board);
   return poses;

@@ -30,7 +30,7 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double sigma_px = 0.2;
+constexpr double view_sigma_px = 0.2;
 
 SimulatedBoard first_views(double noise_px, int frames = 8) {
   return simulate_board(test::stereo_rig(), {},
@@ -38,11 +38,11 @@ SimulatedBoard first_views(double noise_px, int frames = 8) {
 }
 
 RigEstimate calibrated(const BoardObservations& observations) {
-  return calibrate(observations, {.pixel_sigma_px = sigma_px, .white_noise = true});
+  return calibrate(observations, {.pixel_sigma_px = view_sigma_px, .white_noise = true});
 }
 
 std::vector<CandidateView> candidates_of(const Rig& rig, const PlacementOptions& options = {}) {
-  return candidate_views(rig, target_points({}), {0, 0}, sigma_px, options);
+  return candidate_views(rig, target_points({}), {0, 0}, view_sigma_px, options);
 }
 
 /// The observations with a noise-free view of a placement added.
@@ -85,7 +85,7 @@ TEST(NextView, PredictsTheBoundOfTheCalibrationWithIt) {
 
 // With noise in the first views the estimate moves a little when the new one comes.
 TEST(NextView, PredictsTheBoundWithinAFewPerCentUnderNoise) {
-  const SimulatedBoard board = first_views(sigma_px);
+  const SimulatedBoard board = first_views(view_sigma_px);
   const RigEstimate before = calibrated(board.observations);
   const ViewAdvice advice =
       advise_views(ScaledDecomposition(*before.covariance).factor(), candidates_of(before.rig),
@@ -207,7 +207,7 @@ TEST(BoardPlacements, RefuseABoardThatFitsNowhere) {
 }
 
 TEST(TargetQuantity, DepthIsThatOfDepthUncertainty) {
-  const RigEstimate estimate = calibrated(first_views(sigma_px).observations);
+  const RigEstimate estimate = calibrated(first_views(view_sigma_px).observations);
   for (const double range : {1.0, 5.0, 20.0}) {
     const double sd = sd_of(target_quantity(estimate.rig, "depth", range),
                             ScaledDecomposition(*estimate.covariance).factor());

@@ -35,11 +35,11 @@ Eigen::Vector2d pixel(const nlohmann::json& json) {
   return {json[0].get<double>(), json[1].get<double>()};
 }
 
-double relative_difference(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& theirs) {
+double largest_relative_difference(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& theirs) {
   return (ours - theirs).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff();
 }
 
-std::string text(double number) {
+std::string number_text(double number) {
   std::ostringstream out;
   out << number;
   return out.str();
@@ -80,12 +80,12 @@ TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
       for (std::size_t column = 0; column < grid["q"][row].size(); ++column) {
         const auto C = ours.covariance(pixel(grid["q"][row][column]), distance_m);
         ASSERT_TRUE(C);
-        worst = std::max(worst, relative_difference(*C, matrix(grid["cov"][row][column])));
+        worst = std::max(worst, largest_relative_difference(*C, matrix(grid["cov"][row][column])));
         ++compared;
       }
     }
   }
-  RecordProperty("worst_relative_difference", text(worst));
+  RecordProperty("worst_relative_difference", number_text(worst));
   EXPECT_EQ(compared, 2 * 6 * 48);  // cameras, distances (infinity among them), pixels
   EXPECT_LT(worst, 1e-6);
 }
@@ -108,9 +108,9 @@ TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
       const auto x = theirs["p"][i].get<std::vector<double>>();
       const Eigen::Map<const Eigen::Vector3d> x_theirs(x.data());
       worst_point = std::max(worst_point, (point->x_m - x_theirs).norm() / x_theirs.norm());
-      worst_observation =
-          std::max(worst_observation,
-                   relative_difference(point->observation, matrix(theirs["Var_observation"][i])));
+      worst_observation = std::max(
+          worst_observation,
+          largest_relative_difference(point->observation, matrix(theirs["Var_observation"][i])));
       for (std::size_t j = 0; j < pixels.size(); ++j) {
         Eigen::Matrix3d between;
         for (int a = 0; a < 3; ++a) {
@@ -118,17 +118,18 @@ TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
             between(a, b) = theirs["Var_calibration"][i][a][j][b].get<double>();
           }
         }
-        worst_calibration = std::max(worst_calibration,
-                                     relative_difference(*ours.between(pair(i), pair(j)), between));
+        worst_calibration =
+            std::max(worst_calibration,
+                     largest_relative_difference(*ours.between(pair(i), pair(j)), between));
         if (i == j) {
-          EXPECT_LT(relative_difference(point->calibration, between), 1e-6);
+          EXPECT_LT(largest_relative_difference(point->calibration, between), 1e-6);
         }
       }
     }
     const std::string name = key;
-    RecordProperty(name + "_point", text(worst_point));
-    RecordProperty(name + "_observation", text(worst_observation));
-    RecordProperty(name + "_calibration", text(worst_calibration));
+    RecordProperty(name + "_point", number_text(worst_point));
+    RecordProperty(name + "_observation", number_text(worst_observation));
+    RecordProperty(name + "_calibration", number_text(worst_calibration));
     EXPECT_LT(worst_point, 1e-6);
     EXPECT_LT(worst_observation, 1e-6);
     EXPECT_LT(worst_calibration, 1e-6);

@@ -28,10 +28,10 @@ constexpr int samples = 2000;
 constexpr double psi_c = 0.02;  // where everything is linear: what parts there is a mistake
 constexpr double alarm = 1e-3;  // of each test, over all its comparisons together (Bonferroni)
 
-const RigEstimate& estimate() {
-  static const RigEstimate estimate = calibrate(
+const RigEstimate& propagated_estimate() {
+  static const RigEstimate propagated_estimate = calibrate(
       simulate_board(test::stereo_rig(), {9, 6, 0.04}, {.seed = 7, .frames = 12}).observations);
-  return estimate;
+  return propagated_estimate;
 }
 
 /// Whether variances sampled at psi_c are those of the linear covariance: n − 1 of them over the
@@ -46,13 +46,13 @@ void expect_same_variances(const Matrix& sampled, const Matrix& linear, double p
 }
 
 TEST(SampledPropagation, ProjectionIsTheLinearOneAtSmallPsi) {
-  const RigSampler sampler(estimate());
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::honest);
+  const RigSampler sampler(propagated_estimate());
+  const RigAndBoards joint = rig_and_boards(propagated_estimate(), CovarianceChoice::honest);
   std::vector<FixedPoint> points;
   for (const double distance_m : {0.5, 2.0, std::numeric_limits<double>::infinity()}) {
     const bool far = std::isinf(distance_m);
     for (const auto& q : {Eigen::Vector2d(320, 240), {60, 50}, {590, 420}}) {
-      const Eigen::Vector3d ray = unproject(estimate().rig.cameras[1], q).normalized();
+      const Eigen::Vector3d ray = unproject(propagated_estimate().rig.cameras[1], q).normalized();
       points.push_back({far ? ray : Eigen::Vector3d(distance_m * ray), far});
     }
   }
@@ -75,11 +75,11 @@ TEST(SampledPropagation, ProjectionIsTheLinearOneAtSmallPsi) {
 }
 
 TEST(SampledPropagation, TriangulationIsTheLinearOneAtSmallPsi) {
-  const RigSampler sampler(estimate());
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::honest);
+  const RigSampler sampler(propagated_estimate());
+  const RigAndBoards joint = rig_and_boards(propagated_estimate(), CovarianceChoice::honest);
   std::vector<PixelPair> pairs;
   for (const auto& x : {Eigen::Vector3d(0, 0, 1), {0.3, -0.2, 1.5}, {-1, 0.5, 4}, {0.2, 0.1, 8}}) {
-    pairs.push_back(*pixel_pair(estimate().rig, x));
+    pairs.push_back(*pixel_pair(propagated_estimate().rig, x));
   }
   for (const auto frame : {TriangulationFrame::rig, TriangulationFrame::stabilised}) {
     const TriangulationUncertainty linear(joint, frame);
@@ -93,17 +93,18 @@ TEST(SampledPropagation, TriangulationIsTheLinearOneAtSmallPsi) {
 }
 
 TEST(SampledPropagation, PixelNoiseOfThePairIsTheLinearOneWhereTheRigIsExact) {
-  const RigSampler sampler(estimate());
-  const std::vector<PixelPair> pairs{*pixel_pair(estimate().rig, {0.1, 0.2, 1.5})};
+  const RigSampler sampler(propagated_estimate());
+  const std::vector<PixelPair> pairs{*pixel_pair(propagated_estimate().rig, {0.1, 0.2, 1.5})};
   const auto drawn = sampled_triangulation(sampler, {}, TriangulationFrame::rig, pairs, 0.1 * psi_c,
                                            {.psi_c = 0, .samples = samples, .seed = 23})[0];
-  const TriangulationUncertainty linear(estimate().rig, estimate().covariance->matrix);
+  const TriangulationUncertainty linear(propagated_estimate().rig,
+                                        propagated_estimate().covariance->matrix);
   expect_same_variances(drawn.covariance, linear.at(pairs[0], 0.1)->observation, alarm / 3);
 }
 
 TEST(SampledPropagation, DepthIntervalIsTheLinearOneAtSmallPsi) {
-  const auto u =
-      depth_uncertainty(estimate(), {2}, {.psi_c = psi_c, .samples = samples, .seed = 24})[0];
+  const auto u = depth_uncertainty(propagated_estimate(), {2},
+                                   {.psi_c = psi_c, .samples = samples, .seed = 24})[0];
   // The standard error of a 2.5 % quantile of n normal draws is sqrt(p(1-p)/n)/phi(z) = 2.67/√n
   // standard deviations; two ends, two-sided.
   const double band = normal_quantile(1 - alarm / 4) * 2.67 / std::sqrt(samples);

@@ -43,10 +43,10 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double far_away_m = std::numeric_limits<double>::infinity();
 const std::vector<Eigen::Vector2d> pixels{{320, 240}, {40, 30}, {600, 35}, {25, 450}, {610, 440}};
 
-bool says(const std::string& text, const std::string& part) {
+bool has_part(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -60,18 +60,18 @@ std::string error_output(Call call) {
   return "none";
 }
 
-double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+double relative_change(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
 /// A calibration from ten noisy views with the noise known to be white.
-const RigEstimate& estimate() {
-  static const RigEstimate estimate = [] {
+const RigEstimate& nominal_estimate() {
+  static const RigEstimate nominal_estimate = [] {
     const SimulatedBoard board = simulate_board(test::stereo_rig(), {6, 5, 0.05},
                                                 {.seed = 7, .frames = 10, .pixel_sigma_px = 0.2});
     return calibrate(board.observations, {.pixel_sigma_px = 0.2, .white_noise = true});
   }();
-  return estimate;
+  return nominal_estimate;
 }
 
 // The whole chain against brute force: every pixel of a noise-free calibration is moved by ±h, all
@@ -164,14 +164,14 @@ void BruteForce::compare() {
   for (int c = 0; c < 2; ++c) {
     const ProjectionUncertainty ours(joint, c, PointFixedTo::boards);
     const Pose& T = truth_.rig.T_camera_first[c];
-    EXPECT_LT(relative_difference(ours.covariance_of_point(T * x), C[c][0]), 1e-5);
-    EXPECT_LT(relative_difference(ours.covariance_of_direction(T.R * x), C[c][1]), 1e-5);
+    EXPECT_LT(relative_change(ours.covariance_of_point(T * x), C[c][0]), 1e-5);
+    EXPECT_LT(relative_change(ours.covariance_of_direction(T.R * x), C[c][1]), 1e-5);
   }
   const auto told = [&](TriangulationFrame frame) {
     return TriangulationUncertainty(joint, frame).at(pair, 0)->calibration;
   };
-  EXPECT_LT(relative_difference(told(TriangulationFrame::rig), in_rig), 1e-5);
-  EXPECT_LT(relative_difference(told(TriangulationFrame::stabilised), stabilised), 1e-5);
+  EXPECT_LT(relative_change(told(TriangulationFrame::rig), in_rig), 1e-5);
+  EXPECT_LT(relative_change(told(TriangulationFrame::stabilised), stabilised), 1e-5);
 }
 
 TEST_F(BruteForce, ProjectionAndTriangulationRespondAsPropagated) {
@@ -253,7 +253,7 @@ TEST(JointInformation, IsTheInverseOfTheFullNormalMatrixForFlatAndWarpedBoards) 
 }
 
 TEST(JointInformation, MeanMotionIsTheMeanOfThePoses) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
+  const RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::mvb);
   const int n = parameter_count(joint.rig), frames = static_cast<int>(joint.frames.size());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + 6, n + 6 * frames);
   M.topLeftCorner(n, n).setIdentity();
@@ -263,23 +263,23 @@ TEST(JointInformation, MeanMotionIsTheMeanOfThePoses) {
     M.block<3, 3>(n + 3, n + 6 * f + 3).setIdentity();
   }
   M.bottomRows(6) /= frames;
-  EXPECT_LT(relative_difference(rig_and_motion_covariance(joint),
-                                M * rig_and_poses_covariance(joint) * M.transpose()),
+  EXPECT_LT(relative_change(rig_and_motion_covariance(joint),
+                            M * rig_and_poses_covariance(joint) * M.transpose()),
             1e-10);
 }
 
 TEST(ProjectionUncertainty, DoesNotDependOnWhichCameraIsTheFirst) {
-  BoardObservations swapped = estimate().evidence->observations;
+  BoardObservations swapped = nominal_estimate().evidence->observations;
   for (BoardView& view : swapped.views) view.camera = 1 - view.camera;
   const RigEstimate other = calibrate(swapped, {.pixel_sigma_px = 0.2, .white_noise = true});
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
+  const RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::mvb);
   const RigAndBoards joint_swapped = rig_and_boards(other, CovarianceChoice::mvb);
   for (int c = 0; c < 2; ++c) {
     const ProjectionUncertainty a(joint, c, PointFixedTo::boards);
     const ProjectionUncertainty b(joint_swapped, 1 - c, PointFixedTo::boards);
-    for (const double distance_m : {0.7, 5.0, infinity}) {
+    for (const double distance_m : {0.7, 5.0, far_away_m}) {
       for (const auto& q : pixels) {
-        EXPECT_LT(relative_difference(*a.covariance(q, distance_m), *b.covariance(q, distance_m)),
+        EXPECT_LT(relative_change(*a.covariance(q, distance_m), *b.covariance(q, distance_m)),
                   1e-5);
       }
     }
@@ -287,37 +287,37 @@ TEST(ProjectionUncertainty, DoesNotDependOnWhichCameraIsTheFirst) {
 }
 
 TEST(ProjectionUncertainty, FarPointsApproachInfinityAndACameraFixedRayHasNoDistance) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
+  const RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::mvb);
   for (int c = 0; c < 2; ++c) {
     for (const auto fixed_to : {PointFixedTo::boards, PointFixedTo::first_camera}) {
       const ProjectionUncertainty u(joint, c, fixed_to);
       for (const auto& q : pixels) {
-        EXPECT_LT(relative_difference(*u.covariance(q, 1e7), *u.covariance(q, infinity)), 1e-5);
+        EXPECT_LT(relative_change(*u.covariance(q, 1e7), *u.covariance(q, far_away_m)), 1e-5);
       }
     }
     const ProjectionUncertainty camera(joint, c, PointFixedTo::camera);
     for (const auto& q : pixels) {
-      EXPECT_LT(relative_difference(*camera.covariance(q, 0.3), *camera.covariance(q, infinity)),
+      EXPECT_LT(relative_change(*camera.covariance(q, 0.3), *camera.covariance(q, far_away_m)),
                 1e-12);
     }
   }
 }
 
 TEST(ProjectionUncertainty, ARigAloneGivesTheSameAsWithItsBoardsWhereTheyPlayNoPart) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::honest);
+  const RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::honest);
   const ProjectionUncertainty with(joint, 1, PointFixedTo::first_camera);
   const ProjectionUncertainty alone(joint.rig, joint.rig_covariance, 1, PointFixedTo::first_camera);
   EXPECT_EQ(*with.covariance({100, 90}, 2), *alone.covariance({100, 90}, 2));
 }
 
 TEST(ProjectionUncertainty, AnHonestCovarianceThatIsAMultipleOfTheBoundScalesEverything) {
-  RigEstimate scaled = estimate();
+  RigEstimate scaled = nominal_estimate();
   scaled.covariance->kind = CovarianceKind::jackknife;
   scaled.covariance->matrix = 4 * *scaled.covariance_mvb;
   const RigAndBoards honest = rig_and_boards(scaled, CovarianceChoice::honest);
   const RigAndBoards bound = rig_and_boards(scaled, CovarianceChoice::mvb);
   EXPECT_LT(
-      relative_difference(rig_and_motion_covariance(honest), 4 * rig_and_motion_covariance(bound)),
+      relative_change(rig_and_motion_covariance(honest), 4 * rig_and_motion_covariance(bound)),
       1e-9);
 }
 
@@ -348,7 +348,7 @@ TEST(ProjectionUncertainty, APriorIsNotInflatedWithTheViews) {
 }
 
 TEST(ProjectionUncertainty, HeldParametersTakeNoPart) {
-  RigEstimate held = estimate();
+  RigEstimate held = nominal_estimate();
   held.covariance->kind = CovarianceKind::jackknife;
   for (Eigen::MatrixXd* C : {&held.covariance->matrix, &*held.covariance_mvb}) {
     C->row(1).setZero();
@@ -374,7 +374,7 @@ TEST(ProjectionUncertainty, PixelsWithoutARayAreAbsentAndCounted) {
 }
 
 TEST(ProjectionUncertainty, GridIsThatOfTheImageRowByRow) {
-  const ProjectionUncertainty u(estimate().rig, estimate().covariance->matrix, 0,
+  const ProjectionUncertainty u(nominal_estimate().rig, nominal_estimate().covariance->matrix, 0,
                                 PointFixedTo::camera);
   const ProjectionGrid grid = projection_grid(u, {.columns = 5, .rows = 4});
   EXPECT_EQ(grid.x_px.back(), 639);
@@ -385,21 +385,27 @@ TEST(ProjectionUncertainty, GridIsThatOfTheImageRowByRow) {
 }
 
 TEST(ProjectionUncertainty, BadInputIsNamed) {
-  const Rig& rig = estimate().rig;
-  const Eigen::MatrixXd& C = estimate().covariance->matrix;
+  const Rig& rig = nominal_estimate().rig;
+  const Eigen::MatrixXd& C = nominal_estimate().covariance->matrix;
   const ProjectionUncertainty u(rig, C, 0, PointFixedTo::camera);
-  EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, 0); }), "a distance of 0 m");
-  EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, std::nan("")); }), "distance of nan");
-  EXPECT_PRED2(says, error_output([&] { projection_grid(u, {.columns = 0, .rows = 0}); }),
+  EXPECT_PRED2(has_part, error_output([&] { u.covariance({1, 1}, 0); }), "a distance of 0 m");
+  EXPECT_PRED2(has_part, error_output([&] {
+                 u.covariance({1, 1}, std::nan(""));
+               }),
+               "distance of nan");
+  EXPECT_PRED2(has_part, error_output([&] { projection_grid(u, {.columns = 0, .rows = 0}); }),
                "a grid of 0x0");
-  EXPECT_PRED2(
-      says, error_output([&] { projection_grid(u, {.columns = 3, .rows = 3, .distance_m = -1}); }),
-      "a distance of -1 m");
-  EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 2, PointFixedTo::camera); }),
+  EXPECT_PRED2(has_part, error_output([&] {
+                 projection_grid(u, {.columns = 3, .rows = 3, .distance_m = -1});
+               }),
+               "a distance of -1 m");
+  EXPECT_PRED2(has_part,
+               error_output([&] { ProjectionUncertainty(rig, C, 2, PointFixedTo::camera); }),
                "no camera 2: it has 2");
-  EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 0, PointFixedTo::boards); }),
+  EXPECT_PRED2(has_part,
+               error_output([&] { ProjectionUncertainty(rig, C, 0, PointFixedTo::boards); }),
                "needs their poses");
-  EXPECT_PRED2(says, error_output([&] {
+  EXPECT_PRED2(has_part, error_output([&] {
                  ProjectionUncertainty(rig, Eigen::MatrixXd::Identity(3, 3), 0,
                                        PointFixedTo::camera);
                }),
@@ -408,15 +414,15 @@ TEST(ProjectionUncertainty, BadInputIsNamed) {
 
 TEST(RigAndBoards, WhatIsMissingIsNamed) {
   const auto with = [&](auto change) {
-    RigEstimate e = estimate();
+    RigEstimate e = nominal_estimate();
     change(e);
     return error_output([&] { rig_and_boards(e, CovarianceChoice::mvb, "r.json"); });
   };
-  EXPECT_PRED2(says, with([](RigEstimate& e) { e.evidence.reset(); }),
+  EXPECT_PRED2(has_part, with([](RigEstimate& e) { e.evidence.reset(); }),
                "r.json: it holds no views of a board");
-  EXPECT_PRED2(says, with([](RigEstimate& e) { e.calibration.reset(); }),
+  EXPECT_PRED2(has_part, with([](RigEstimate& e) { e.calibration.reset(); }),
                "r.json: its pixel noise is unknown");
-  EXPECT_PRED2(says, with([](RigEstimate& e) {
+  EXPECT_PRED2(has_part, with([](RigEstimate& e) {
                  e.covariance_mvb.reset();
                  e.covariance->kind = CovarianceKind::clustered;
                }),
@@ -436,14 +442,14 @@ TEST(Triangulation, DerivativesAreThoseOfDifferences) {
       const auto by_rig = test::numeric_jacobian(
           [&](const Eigen::VectorXd& d) { return *triangulate_point(retract(rig, d), pair); },
           Eigen::VectorXd::Zero(parameter_count(rig)), 1e-5);
-      EXPECT_LT(relative_difference(p.by_rig, by_rig), 1e-7) << model;
+      EXPECT_LT(relative_change(p.by_rig, by_rig), 1e-7) << model;
       const auto by_pixels = test::numeric_jacobian(
           [&](const Eigen::VectorXd& d) {
             return *triangulate_point(rig,
                                       {pair.first_px + d.head<2>(), pair.other_px + d.tail<2>()});
           },
           Eigen::VectorXd::Zero(4), 1e-3);
-      EXPECT_LT(relative_difference(p.by_pixels, by_pixels), 1e-7) << model;
+      EXPECT_LT(relative_change(p.by_pixels, by_pixels), 1e-7) << model;
     }
   }
 }
@@ -463,26 +469,27 @@ TEST(Triangulation, OfARigOfOneCameraIsRefused) {
   Rig one = test::stereo_rig();
   one.cameras.pop_back();
   one.T_camera_first.pop_back();
-  EXPECT_PRED2(says, error_output([&] {
+  EXPECT_PRED2(has_part, error_output([&] {
                  triangulate_point(one, {{1, 1}, {1, 1}});
                }),
                "the rig has 1 camera(s)");
-  EXPECT_PRED2(says, error_output([&] {
-                 TriangulationUncertainty(estimate().rig, estimate().covariance->matrix)
+  EXPECT_PRED2(has_part, error_output([&] {
+                 TriangulationUncertainty(nominal_estimate().rig,
+                                          nominal_estimate().covariance->matrix)
                      .at({{1, 1}, {1, 1}}, -1);
                }),
                "pixel noise is negative or not a number");
 }
 
 TEST(TriangulationUncertainty, ALengthIsBetterKnownThanItsEnds) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
+  const RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::mvb);
   const TriangulationUncertainty u(joint, TriangulationFrame::rig);
   const PixelPair a = *pixel_pair(joint.rig, {0, 0, 3}), b = *pixel_pair(joint.rig, {0.1, 0, 3});
   const Eigen::Matrix3d between = *u.between(a, b);
   const Eigen::Matrix3d at_a = u.at(a, 0.2)->calibration, at_b = u.at(b, 0.2)->calibration;
   const Eigen::Matrix3d difference = at_a + at_b - between - between.transpose();
   EXPECT_LT(difference(0, 0), 0.1 * at_a(0, 0));
-  EXPECT_LT(relative_difference(*u.between(a, a), at_a), 1e-9);
+  EXPECT_LT(relative_change(*u.between(a, a), at_a), 1e-9);
 }
 
 TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
@@ -507,30 +514,31 @@ TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
   const PixelPair q = *pixel_pair(three, {0.1, 0.1, 2}, 2);
   const auto from_all = TriangulationUncertainty(three, all.covariance->matrix, 2).at(q, 0.1);
   const auto from_pair = TriangulationUncertainty(pair.rig, pair.covariance->matrix).at(q, 0.1);
-  EXPECT_LT(relative_difference(from_all->calibration, from_pair->calibration), 1e-12);
-  EXPECT_PRED2(says, error_output([&] { pair_of(all, 3); }), "no camera 3");
+  EXPECT_LT(relative_change(from_all->calibration, from_pair->calibration), 1e-12);
+  EXPECT_PRED2(has_part, error_output([&] { pair_of(all, 3); }), "no camera 3");
 }
 
 TEST(DepthUncertainty, IntervalHoldsTheRangeAndReachesInfinityWhereRaysPart) {
-  const auto near = depth_uncertainty(estimate(), {1, 5}, {.samples = 500, .seed = 3});
+  const auto near = depth_uncertainty(nominal_estimate(), {1, 5}, {.samples = 500, .seed = 3});
   for (const auto& u : near) {
     EXPECT_LT(u.interval_95_m.low, u.range_m);
     EXPECT_GT(u.interval_95_m.high, u.range_m);
     EXPECT_EQ(u.non_physical_share, 0);
   }
   const auto wild =
-      depth_uncertainty(estimate(), {20}, {.psi_c = 100, .samples = 500, .seed = 3})[0];
+      depth_uncertainty(nominal_estimate(), {20}, {.psi_c = 100, .samples = 500, .seed = 3})[0];
   EXPECT_GT(wild.non_physical_share, 0.025);
-  EXPECT_EQ(wild.interval_95_m.high, infinity);
-  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {infinity}); }),
+  EXPECT_EQ(wild.interval_95_m.high, far_away_m);
+  EXPECT_PRED2(has_part, error_output([] { depth_uncertainty(nominal_estimate(), {far_away_m}); }),
                "a range of inf m");
-  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {1}, {.samples = 1}); }),
+  EXPECT_PRED2(has_part,
+               error_output([] { depth_uncertainty(nominal_estimate(), {1}, {.samples = 1}); }),
                "fewer than 2 samples");
 }
 
 TEST(SampledPropagation, NonPhysicalDrawsAreCountedAndGrowWithPsi) {
-  const RigSampler sampler(estimate());
-  const std::vector<PixelPair> pairs{*pixel_pair(estimate().rig, {0, 0, 15})};
+  const RigSampler sampler(nominal_estimate());
+  const std::vector<PixelPair> pairs{*pixel_pair(nominal_estimate().rig, {0, 0, 15})};
   double last = -1;
   for (const double psi_c : {1.0, 30.0, 300.0}) {
     const auto point = sampled_triangulation(sampler, {}, TriangulationFrame::rig, pairs, 0,
@@ -546,21 +554,23 @@ TEST(SampledPropagation, NonPhysicalDrawsAreCountedAndGrowWithPsi) {
 }
 
 TEST(SampledPropagation, BadInputIsNamed) {
-  const RigSampler sampler(estimate());
+  const RigSampler sampler(nominal_estimate());
   const FixedPoint point{{0, 0, 1}, false};
   const std::span<const FixedPoint> points(&point, 1);
-  EXPECT_PRED2(
-      says, error_output([&] { sampled_projection(sampler, {}, 0, PointFixedTo::boards, points); }),
-      "needs their poses");
-  EXPECT_PRED2(
-      says, error_output([&] { sampled_projection(sampler, {}, 5, PointFixedTo::camera, points); }),
-      "no such camera");
-  EXPECT_PRED2(says, error_output([&] {
+  EXPECT_PRED2(has_part, error_output([&] {
+                 sampled_projection(sampler, {}, 0, PointFixedTo::boards, points);
+               }),
+               "needs their poses");
+  EXPECT_PRED2(has_part, error_output([&] {
+                 sampled_projection(sampler, {}, 5, PointFixedTo::camera, points);
+               }),
+               "no such camera");
+  EXPECT_PRED2(has_part, error_output([&] {
                  sampled_projection(sampler, {}, 0, PointFixedTo::camera, points, {.samples = 1});
                }),
                "fewer than 2 samples");
   const PixelPair parting{{100, 240}, {600, 240}};
-  EXPECT_PRED2(says, error_output([&] {
+  EXPECT_PRED2(has_part, error_output([&] {
                  sampled_triangulation(sampler, {}, TriangulationFrame::rig, {&parting, 1}, 0);
                }),
                "cannot be triangulated with the rig itself");

@@ -20,10 +20,10 @@ using namespace vernier::internal;
 
 namespace {
 
-RigEstimate estimate() {
-  static const RigEstimate estimate =
+RigEstimate sampled_estimate() {
+  static const RigEstimate sampled_estimate =
       calibrate(simulate_board(test::stereo_rig(), {}, {.seed = 3}).observations);
-  return estimate;
+  return sampled_estimate;
 }
 
 // Seed 11 fixed. With W the whitened sample scatter of n = 10,000 draws in p = 16 dimensions,
@@ -31,9 +31,9 @@ RigEstimate estimate() {
 // n; off-diagonal elements have standard deviation 1/sqrt(n). False-alarm rate: two-sided 1e-3 for
 // the trace, 1e-3 over all the others together (Bonferroni over 136).
 TEST(Sampler, TenThousandDrawsReproduceTheCovariance) {
-  const RigSampler sampler(estimate());
+  const RigSampler sampler(sampled_estimate());
   const int n = 10000, p = 16;
-  const Cholesky L(estimate().covariance->matrix);
+  const Cholesky L(sampled_estimate().covariance->matrix);
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(p, p);
   for (int i = 0; i < n; ++i) {
     const Eigen::VectorXd z = L.solve_lower(sampler.deviation(1, 11, i));
@@ -54,7 +54,7 @@ TEST(Sampler, TenThousandDrawsReproduceTheCovariance) {
 // The extreme eigenvalues, against the same statistic of a Wishart matrix simulated from
 // independent draws: inside its range over 200 repeats (false-alarm rate 1 % a tail).
 TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
-  const RigSampler sampler(estimate());
+  const RigSampler sampler(sampled_estimate());
   const int n = 2000, p = 16;
   const auto extremes = [&](const Eigen::MatrixXd& scatter) {
     const Eigen::VectorXd e = symmetric_eigenvalues(scatter / n);
@@ -71,7 +71,7 @@ TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
     highest = std::max(highest, high);
     lowest_high = std::min(lowest_high, high);
   }
-  const Cholesky L(estimate().covariance->matrix);
+  const Cholesky L(sampled_estimate().covariance->matrix);
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(p, p);
   for (int i = 0; i < n; ++i) {
     const Eigen::VectorXd z = L.solve_lower(sampler.deviation(1, 12, i));
@@ -85,7 +85,7 @@ TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
 }
 
 TEST(Sampler, PsiCScalesDeviationsExactly) {
-  const RigSampler sampler(estimate());
+  const RigSampler sampler(sampled_estimate());
   for (std::uint32_t trial = 0; trial < 50; ++trial) {
     const Eigen::VectorXd one = sampler.deviation(1, 5, trial);
     EXPECT_EQ(sampler.deviation(2, 5, trial), 2 * one);
@@ -93,7 +93,7 @@ TEST(Sampler, PsiCScalesDeviationsExactly) {
     constexpr double small = 1e-6;
     const Eigen::VectorXd moved =
         difference(sampler.sample(small, 5, trial), sampler.mean()) / small;
-    const Eigen::VectorXd sigma = estimate().covariance->matrix.diagonal().cwiseSqrt();
+    const Eigen::VectorXd sigma = sampled_estimate().covariance->matrix.diagonal().cwiseSqrt();
     EXPECT_LT((moved - one).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-3);
   }
 }

@@ -33,7 +33,7 @@ using localise::internal::LevelPose;
 using stereo::internal::SegmentStatus;
 using vernier::internal::RandomStream;
 
-Camera pinhole() {
+Camera depth_pinhole() {
   Camera camera;
   camera.model = Pinhole{};
   camera.parameters = Eigen::Vector4d(500, 1.02, 322, 241);
@@ -82,7 +82,7 @@ TEST(DepthCamera, WithoutSourcesSeesWhatIsThere) {
   const Visibility visibility(world);
   SourceSettings settings = no_sources();
   settings.epipolar_reject_deg = 0;
-  const DepthCameraSensor sensor(pinhole(), 1.5e-3, settings);
+  const DepthCameraSensor sensor(depth_pinhole(), 1.5e-3, settings);
   const NoiseFreeViewOptions how = tilted();
   const DepthSegments seen = sensor.sense(visibility, {}, how, {});
   EXPECT_EQ(seen.image.size(), world.segments.size());
@@ -100,7 +100,7 @@ TEST(DepthCamera, DepthsErrAsStated) {
   const World world = wall();
   const Visibility visibility(world);
   constexpr double per_m2 = 2e-3;
-  const DepthCameraSensor sensor(pinhole(), per_m2, only_ends());
+  const DepthCameraSensor sensor(depth_pinhole(), per_m2, only_ends());
   EXPECT_NEAR(sensor.baseline_m(), 0.3 / (510 * per_m2), 1e-12);
   const Pose T_camera_world = T_left_world({}, tilted().mount, tilted().roll_rad);
   const Vector3d normal = T_camera_world.R * Vector3d::UnitX();
@@ -133,7 +133,8 @@ TEST(DepthCamera, DrawsAreThoseOfTheViewAndTheSource) {
   const Visibility visibility(world);
   SourceSettings with_loss = only_ends();
   with_loss.stereo_mismatch = 0.3;
-  const DepthCameraSensor plain(pinhole(), 2e-3, only_ends()), lossy(pinhole(), 2e-3, with_loss);
+  const DepthCameraSensor plain(depth_pinhole(), 2e-3, only_ends()),
+      lossy(depth_pinhole(), 2e-3, with_loss);
   const auto seen = [&](const DepthCameraSensor& sensor, std::uint32_t frame) {
     return sensor.sense(visibility, {}, tilted(), {.seed = 4, .frame = frame});
   };
@@ -152,14 +153,15 @@ TEST(DepthCamera, DrawsAreThoseOfTheViewAndTheSource) {
 }
 
 TEST(DepthCamera, RefusesALensWithDistortion) {
-  Camera camera = pinhole();
+  Camera camera = depth_pinhole();
   camera.model = Radial1{};
   camera.parameters.conservativeResize(5);
   camera.parameters[4] = 0.1;
   EXPECT_NE(test::error_message([&] { DepthCameraSensor(camera, 1e-3, {}); }).find("distortion"),
             std::string::npos);
-  EXPECT_NE(test::error_message([] { DepthCameraSensor(pinhole(), 0, {}); }).find("depth error"),
-            std::string::npos);
+  EXPECT_NE(
+      test::error_message([] { DepthCameraSensor(depth_pinhole(), 0, {}); }).find("depth error"),
+      std::string::npos);
 }
 
 }  // namespace

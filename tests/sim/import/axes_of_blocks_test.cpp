@@ -36,13 +36,13 @@ struct Block {
 };
 
 /// Where a wall stands and how high.
-struct Wall {
+struct BlockWall {
   bool is_along_x = true;  // or y
   double at = 0, from = 0, to = 0, low = 0, high = 0;
   bool has_door = false;  // of 0.9 x 2.1 m
 };
 
-void add_wall(Mesh& mesh, const Wall& wall, double thickness_m) {
+void add_wall(Mesh& mesh, const BlockWall& wall, double thickness_m) {
   constexpr double door_m = 0.8, door_width_m = 0.9, door_height_m = 2.1;
   const auto piece = [&](double from, double to, double low, double high) {
     const auto placed = [&](double along, double across, double z) {

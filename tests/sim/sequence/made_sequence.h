@@ -65,8 +65,8 @@ class MadeSequence {
     Eigen::Vector3d a_m, b_m;
   };
 
-  internal::RandomStream draws(std::uint32_t feature, std::uint32_t source) const {
-    return internal::RandomStream(
+  vernier::internal::RandomStream draws(std::uint32_t feature, std::uint32_t source) const {
+    return vernier::internal::RandomStream(
         {.seed = 77, .trial = trial_, .feature = feature, .source = 200 + source});
   }
 
@@ -177,7 +177,7 @@ class MadeSequence {
                    Eigen::Vector2d a,
                    Eigen::Vector2d b,
                    double scale,
-                   internal::RandomStream& draw,
+                   vernier::internal::RandomStream& draw,
                    sim::internal::SequenceView& view) const {
     const Eigen::Vector2d t = (b - a).normalized(), n(-t.y(), t.x());
     sim::internal::SequenceSegment segment;

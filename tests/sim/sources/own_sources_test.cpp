@@ -111,7 +111,7 @@ SourceSettings running(const std::string& command, double time_limit_s = 10) {
   return settings;
 }
 
-StereoObservation sense(const SourceSettings& settings, std::uint32_t trial = 0) {
+StereoObservation sensed_with(const SourceSettings& settings, std::uint32_t trial = 0) {
   return Sensor(test::nominal_rig().rig, settings)
       .sense(test::office_look(), {.seed = 7, .trial = trial, .frame = 2});
 }
@@ -124,8 +124,8 @@ const std::string answer = "print(json.dumps({'edges': edges}), flush=True)";
 
 TEST(ProgramSource, ThatReturnsEverythingChangesNothing) {
   const Folder folder;
-  const StereoObservation bare = sense({}),
-                          echoed = sense(running(python(
+  const StereoObservation bare = sensed_with({}),
+                          echoed = sensed_with(running(python(
                               folder, "edges = [{'id': e['id']} for e in edges]; " + answer)));
   EXPECT_EQ(echoed.failure, "");
   ASSERT_EQ(bare.segments.size(), echoed.segments.size());
@@ -139,8 +139,8 @@ TEST(ProgramSource, ThatReturnsEverythingChangesNothing) {
 
 TEST(ProgramSource, LeavesOutMovesAndAdds) {
   const Folder folder;
-  const StereoObservation bare = sense({});
-  const StereoObservation changed = sense(running(python(
+  const StereoObservation bare = sensed_with({});
+  const StereoObservation changed = sensed_with(running(python(
       folder,
       "assert view['seed'] == 7 and view['trial'] == 0 and view['frame'] == 2 and len(cameras) == "
       "2\n"
@@ -172,7 +172,7 @@ TEST(ProgramSource, WorksAsTheManualSays) {
   const Sensor sensor(test::nominal_rig().rig, settings);
   double before = 0, kept = 0, ghosts = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const StereoObservation bare = sense({}, trial), seen = sense_by(sensor, trial);
+    const StereoObservation bare = sensed_with({}, trial), seen = sense_by(sensor, trial);
     ASSERT_EQ(seen.failure, "");
     before += static_cast<double>(bare.segments.size());
     for (const VisibleEdge& edge : seen.true_edges) (edge.is_false() ? ghosts : kept) += 1;
@@ -237,7 +237,9 @@ TEST(ProgramSource, IsLeftAloneAfterThreeFailures) {
 }
 
 TEST(ProgramSource, SaysWhatItDoesWithTheRig) {
-  const auto first = [](const std::string& command) { return sense(running(command)).failure; };
+  const auto first = [](const std::string& command) {
+    return sensed_with(running(command)).failure;
+  };
   EXPECT_NE(first("python3 -c 'print(1)'").find("instead of"), std::string::npos);
   EXPECT_NE(first("false").find("ended"), std::string::npos);
 }

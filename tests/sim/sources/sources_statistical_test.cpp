@@ -30,7 +30,7 @@ using namespace vernier::sim;
 
 namespace {
 
-const NoiseFreeView& seen() { return test::office_look(); }
+const NoiseFreeView& seen_view() { return test::office_look(); }
 
 // Seed 3, 40 trials. Sum of squares of end-point errors over sigma² is chi-squared; two-sided
 // false-alarm rate 1e-3.
@@ -42,8 +42,8 @@ TEST(SourceStatistics, EndpointErrorHasItsSigma) {
   double sum = 0;
   int n = 0;
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
-    const auto a = noisy.sense(seen(), {.seed = 3, .trial = trial}),
-               b = clean.sense(seen(), {.seed = 3, .trial = trial});
+    const auto a = noisy.sense(seen_view(), {.seed = 3, .trial = trial}),
+               b = clean.sense(seen_view(), {.seed = 3, .trial = trial});
     for (std::size_t i = 0; i < a.segments.size(); ++i) {
       sum += (a.segments[i].left.a_px - b.segments[i].left.a_px).squaredNorm() / 0.0225;
       sum += (a.segments[i].right.b_px - b.segments[i].right.b_px).squaredNorm() / 0.0225;
@@ -64,8 +64,8 @@ TEST(SourceStatistics, CornerSharesAreAsSet) {
   const Sensor sensor(test::nominal_rig().rig, settings);
   double total = 0, kept = 0, wrong = 0;
   for (std::uint32_t trial = 0; trial < 60; ++trial) {
-    const auto sighting = sensor.sense(seen(), {.seed = 3, .trial = trial});
-    total += static_cast<double>(seen().corners.size());
+    const auto sighting = sensor.sense(seen_view(), {.seed = 3, .trial = trial});
+    total += static_cast<double>(seen_view().corners.size());
     kept += static_cast<double>(sighting.corners.size());
     for (const SensedCorner& c : sighting.corners) wrong += c.mismatched;
   }
@@ -168,10 +168,10 @@ TEST(SourceStatistics, ClutterIsAsStated) {
   settings.clutter = 1.37;
   const Rig& rig = test::nominal_rig().rig;
   const Sensor sensor(rig, settings);
-  const auto visible = static_cast<double>(seen().edges.size());
+  const auto visible = static_cast<double>(seen_view().edges.size());
   double frames = 0, count = 0, squares = 0, half_way = 0, in_middle = 0, deep = 0;
   std::vector<double> depths;
-  for (const VisibleEdge& edge : seen().edges)
+  for (const VisibleEdge& edge : seen_view().edges)
     depths.push_back(0.5 * (edge.a_m.z() + edge.b_m.z()));
   std::vector<double> sorted = depths;
   std::sort(sorted.begin(), sorted.end());
@@ -181,7 +181,7 @@ TEST(SourceStatistics, ClutterIsAsStated) {
   const double whole = std::floor(1.37 * visible), part = 1.37 * visible - whole;
   while (count < 1e5) {
     const StereoObservation sighting =
-        sensor.sense(seen(), {.seed = 3, .trial = static_cast<std::uint32_t>(frames)});
+        sensor.sense(seen_view(), {.seed = 3, .trial = static_cast<std::uint32_t>(frames)});
     double here = 0;
     for (std::size_t i = 0; i < sighting.segments.size(); ++i) {
       if (!sighting.true_edges[i].is_false()) continue;

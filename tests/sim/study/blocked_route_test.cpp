@@ -14,7 +14,7 @@
 namespace vernier {
 
 using namespace sim;
-using namespace sim::internal;
+using namespace vernier::sim::internal;
 
 namespace {
 

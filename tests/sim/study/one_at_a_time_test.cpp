@@ -26,7 +26,7 @@
 namespace vernier {
 
 using namespace sim;
-using namespace sim::internal;
+using namespace vernier::sim::internal;
 
 namespace {
 

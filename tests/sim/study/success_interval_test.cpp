@@ -15,8 +15,8 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim::internal;
+using namespace vernier::internal;
+using namespace vernier::sim::internal;
 
 namespace {
 

@@ -42,12 +42,12 @@ namespace {
 
 const std::string head = "[study]\ntrials = 12\nprotocol = \"near_path\"\n[map]\nspacing_m = 2\n";
 
-std::string complaint_of(const std::string& text) {
+std::string told_complaint(const std::string& text) {
   return test::error_message([&] { parse_study(text, "s.toml"); });
 }
 
 bool complains(const std::string& text, const std::string& about) {
-  const std::string complaint = complaint_of(text);
+  const std::string complaint = told_complaint(text);
   return complaint.find(about) != std::string::npos || (ADD_FAILURE() << complaint, false);
 }
 
@@ -372,11 +372,12 @@ TEST(ToldStudy, BadInputNamesTheLineAndTheRemedy) {
                         "s.toml:4: calibration.square_m is that of calibration.observations"));
   EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"rig.json\"\nboard = \"8x5\"\n",
                         "s.toml:4: calibration.board is that of calibration.observations"));
-  EXPECT_EQ(complaint_of(s + "[calibration]\nobservations = \"c.vnl\"\nboard = \"8x5\"\n"), "");
+  EXPECT_EQ(told_complaint(s + "[calibration]\nobservations = \"c.vnl\"\nboard = \"8x5\"\n"), "");
   EXPECT_TRUE(
       complains(s + "[rig]\ntruth = \"a\"\nfile = \"b\"\n[sweep]\n\"rig.truth\" = [\"a\"]\n",
                 "cannot be swept"));
-  EXPECT_EQ(complaint_of(s + "[rig]\ntruth = \"a\"\n[sweep]\n\"rig.file\" = [\"b\", \"c\"]\n"), "");
+  EXPECT_EQ(told_complaint(s + "[rig]\ntruth = \"a\"\n[sweep]\n\"rig.file\" = [\"b\", \"c\"]\n"),
+            "");
 }
 
 // The images of a truth do not know what is told of it.

@@ -33,7 +33,7 @@ using namespace vernier::sim::internal;
 
 namespace {
 
-const RigEstimate& truth() { return test::nominal_rig(); }
+const RigEstimate& true_rig() { return test::nominal_rig(); }
 
 bool same_rig(const Rig& a, const Rig& b) { return parameters(a) == parameters(b); }
 
@@ -44,68 +44,69 @@ bool same_views(const BoardView& a, const BoardView& b) {
 std::string message_of(const auto& work) { return test::error_message(work); }
 
 TEST(ToldRigs, DrawsAreThoseOfTheSamplerAboutTheTruth) {
-  const auto told = drawn_rigs(truth().rig, *truth().covariance, 2, 7, "told.json");
-  const RigSampler sampler(truth());
+  const auto told = drawn_rigs(true_rig().rig, *true_rig().covariance, 2, 7, "told.json");
+  const RigSampler sampler(true_rig());
   for (const std::uint32_t draw : {0u, 5u, 0x80000003u}) {
     EXPECT_TRUE(same_rig(told->told(draw).rig, sampler.sample(2, 7, draw)));
-    EXPECT_FALSE(same_rig(told->told(draw).rig, truth().rig));
+    EXPECT_FALSE(same_rig(told->told(draw).rig, true_rig().rig));
   }
 }
 
 TEST(ToldRigs, NoErrorIsTheTruthToTheBit) {
-  Rig other = truth().rig;
+  Rig other = true_rig().rig;
   other.cameras[0].parameters[0] += 3;
   auto calibrations = std::make_shared<const FreshCalibrations>(
-      truth().rig, FreshCalibrationOptions{.views = 4}, 1);
-  for (const auto& told :
-       {drawn_rigs(truth().rig, *truth().covariance, 0, 7, "told.json"),
-        given_rig(truth().rig, other, 0, "told.json"),
-        given_rig(truth().rig, truth().rig, 1, "told.json"), calibrated_rigs(calibrations, 0)}) {
-    EXPECT_TRUE(same_rig(told->told(3).rig, truth().rig));
+      true_rig().rig, FreshCalibrationOptions{.views = 4}, 1);
+  for (const auto& told : {drawn_rigs(true_rig().rig, *true_rig().covariance, 0, 7, "told.json"),
+                           given_rig(true_rig().rig, other, 0, "told.json"),
+                           given_rig(true_rig().rig, true_rig().rig, 1, "told.json"),
+                           calibrated_rigs(calibrations, 0)}) {
+    EXPECT_TRUE(same_rig(told->told(3).rig, true_rig().rig));
     EXPECT_EQ(told->told(3).failure, "");
   }
 }
 
 TEST(ToldRigs, AGivenErrorScalesInTheTangent) {
-  const Rig given = RigSampler(truth()).sample(3, 1, 0);
-  const Eigen::VectorXd whole = difference(given, truth().rig);
-  const Rig third = given_rig(truth().rig, given, 1.0 / 3, "told.json")->told(0).rig;
-  EXPECT_LT((difference(third, truth().rig) - whole / 3).norm(), 1e-12 * (1 + whole.norm()));
-  EXPECT_TRUE(same_rig(given_rig(truth().rig, given, 1, "told.json")->told(9).rig, given));
+  const Rig given = RigSampler(true_rig()).sample(3, 1, 0);
+  const Eigen::VectorXd whole = difference(given, true_rig().rig);
+  const Rig third = given_rig(true_rig().rig, given, 1.0 / 3, "told.json")->told(0).rig;
+  EXPECT_LT((difference(third, true_rig().rig) - whole / 3).norm(), 1e-12 * (1 + whole.norm()));
+  EXPECT_TRUE(same_rig(given_rig(true_rig().rig, given, 1, "told.json")->told(9).rig, given));
 }
 
 TEST(ToldRigs, AnotherLensModelIsToldAsItIsAndNotScaled) {
-  const Rig richer = in_models(truth().rig, {OpenCv4{}, OpenCv4{}});
-  EXPECT_TRUE(same_rig(given_rig(truth().rig, richer, 1, "told.json")->told(0).rig, richer));
+  const Rig richer = in_models(true_rig().rig, {OpenCv4{}, OpenCv4{}});
+  EXPECT_TRUE(same_rig(given_rig(true_rig().rig, richer, 1, "told.json")->told(0).rig, richer));
   EXPECT_NE(message_of([&] {
-              given_rig(truth().rig, richer, 2, "told.json");
+              given_rig(true_rig().rig, richer, 2, "told.json");
             }).find("told.json: sources.calibration = 2 cannot scale"),
             std::string::npos);
   EXPECT_NE(message_of([&] {
-              Covariance covariance = *truth().covariance;
+              Covariance covariance = *true_rig().covariance;
               drawn_rigs(richer, covariance, 1, 1, "told.json");
             }).find("told.json: its covariance is over other parameters"),
             std::string::npos);
 }
 
 TEST(ToldRigs, OtherCamerasAreRefused) {
-  Rig one = truth().rig;
+  Rig one = true_rig().rig;
   one.cameras.pop_back();
   one.T_camera_first.pop_back();
   EXPECT_NE(message_of([&] {
-              given_rig(truth().rig, one, 1, "told.json");
+              given_rig(true_rig().rig, one, 1, "told.json");
             }).find("told.json: has 1 cameras and the true rig 2"),
             std::string::npos);
-  Rig wide = truth().rig;
+  Rig wide = true_rig().rig;
   wide.cameras[1].size_px = {1280, 720};
   EXPECT_NE(message_of([&] {
-              given_rig(truth().rig, wide, 1, "told.json");
+              given_rig(true_rig().rig, wide, 1, "told.json");
             }).find("the images of camera 1 are 1280x720"),
             std::string::npos);
 }
 
 TEST(FreshCalibrations, FewerViewsAreTheFirstOfMore) {
-  const FreshCalibrations five(truth().rig, {.views = 5}, 11), ten(truth().rig, {.views = 10}, 11);
+  const FreshCalibrations five(true_rig().rig, {.views = 5}, 11),
+      ten(true_rig().rig, {.views = 10}, 11);
   for (const std::uint32_t draw : {0u, 1u, 0x80000000u}) {
     const auto few = five.views_of(draw).views, many = ten.views_of(draw).views;
     ASSERT_EQ(few.size(), 10u);
@@ -113,16 +114,16 @@ TEST(FreshCalibrations, FewerViewsAreTheFirstOfMore) {
     for (std::size_t i = 0; i < few.size(); ++i) EXPECT_TRUE(same_views(few[i], many[i]));
   }
   // Draws and seeds take other views.
-  const FreshCalibrations other(truth().rig, {.views = 5}, 12);
+  const FreshCalibrations other(true_rig().rig, {.views = 5}, 12);
   EXPECT_FALSE(same_views(five.views_of(0).views[0], five.views_of(1).views[0]));
   EXPECT_FALSE(same_views(five.views_of(0).views[0], other.views_of(0).views[0]));
 }
 
 TEST(FreshCalibrations, SubsetsOfRealViewsAreNestedToo) {
   const auto all = std::make_shared<const BoardObservations>(
-      simulate_board(truth().rig, {}, {.seed = 3, .frames = 12}).observations);
-  const FreshCalibrations four(truth().rig, {.views = 4}, 5, all);
-  const FreshCalibrations nine(truth().rig, {.views = 9}, 5, all);
+      simulate_board(true_rig().rig, {}, {.seed = 3, .frames = 12}).observations);
+  const FreshCalibrations four(true_rig().rig, {.views = 4}, 5, all);
+  const FreshCalibrations nine(true_rig().rig, {.views = 9}, 5, all);
   std::vector<std::vector<int>> seen;
   for (std::uint32_t draw = 0; draw < 20; ++draw) {
     const std::vector<int> few = frames_of(four.views_of(draw));
@@ -135,15 +136,15 @@ TEST(FreshCalibrations, SubsetsOfRealViewsAreNestedToo) {
   std::sort(seen.begin(), seen.end());
   EXPECT_GT(std::unique(seen.begin(), seen.end()) - seen.begin(), 15);
   EXPECT_NE(message_of([&] {
-              FreshCalibrations(truth().rig, {.views = 13}, 5, all);
+              FreshCalibrations(true_rig().rig, {.views = 13}, 5, all);
             }).find("calibration.views = 13: the corners are of 12 frames"),
             std::string::npos);
 }
 
 TEST(FreshCalibrations, AreTheProjectsOwnCalibrateWhateverWasAskedBefore) {
-  const FreshCalibrations calibrations(truth().rig, {.views = 5}, 11);
+  const FreshCalibrations calibrations(true_rig().rig, {.views = 5}, 11);
   const auto later = calibrations.of(4);
-  const FreshCalibrations again(truth().rig, {.views = 5}, 11);
+  const FreshCalibrations again(true_rig().rig, {.views = 5}, 11);
   again.of(0);
   again.of(7);
   EXPECT_TRUE(same_rig(later->rig, again.of(4)->rig));
@@ -155,7 +156,8 @@ TEST(FreshCalibrations, AreTheProjectsOwnCalibrateWhateverWasAskedBefore) {
 
 // Errors over 30 calibrations: below the bound by chance with p < 1e-6 if they shrink as 1/sqrt(n).
 TEST(FreshCalibrations, MoreViewsGiveASmallerError) {
-  const FreshCalibrations few(truth().rig, {.views = 5}, 2), many(truth().rig, {.views = 20}, 2);
+  const FreshCalibrations few(true_rig().rig, {.views = 5}, 2),
+      many(true_rig().rig, {.views = 20}, 2);
   const CalibrationRecord of_few = record_of(few, 30), of_many = record_of(many, 30);
   EXPECT_EQ(of_few.calibrations, 30);
   EXPECT_EQ(of_many.failed, 0);
@@ -166,23 +168,23 @@ TEST(FreshCalibrations, MoreViewsGiveASmallerError) {
 
 TEST(FreshCalibrations, AFailureIsCountedAndSaid) {
   // Boards that face the camera do not determine focal lengths.
-  const FreshCalibrations flat(truth().rig, {.views = 3, .tilt_rad = 1e-4}, 2);
+  const FreshCalibrations flat(true_rig().rig, {.views = 3, .tilt_rad = 1e-4}, 2);
   const CalibrationRecord record = record_of(flat, 5);
   EXPECT_EQ(record.failed, 5);
   EXPECT_FALSE(record.why_failed.empty());
   EXPECT_TRUE(std::isnan(record.depth_error_m));
   const auto told =
       calibrated_rigs(std::make_shared<const FreshCalibrations>(
-                          truth().rig, FreshCalibrationOptions{.views = 3, .tilt_rad = 1e-4}, 2),
+                          true_rig().rig, FreshCalibrationOptions{.views = 3, .tilt_rad = 1e-4}, 2),
                       1);
   EXPECT_EQ(told->told(0).failure, record.why_failed);
 }
 
 TEST(ToldRigs, ARigThatNoCamerasCanHaveIsAFailureAndNoRig) {
   const auto failing = [](const Rig& rig) { return impossible(rig); };
-  EXPECT_EQ(failing(truth().rig), "");
+  EXPECT_EQ(failing(true_rig().rig), "");
   const auto changed = [&](int parameter, double value) {
-    Rig rig = truth().rig;
+    Rig rig = true_rig().rig;
     rig.cameras[1].parameters[parameter] = value;
     return rig;
   };
@@ -193,17 +195,17 @@ TEST(ToldRigs, ARigThatNoCamerasCanHaveIsAFailureAndNoRig) {
   EXPECT_EQ(failing(changed(2, -100)), "");  // of an image that was cut
   EXPECT_EQ(failing(changed(2, std::nan(""))), "a parameter is not finite");
 
-  const auto given = given_rig(truth().rig, changed(0, 450), 20, "told.json")->told(0);
+  const auto given = given_rig(true_rig().rig, changed(0, 450), 20, "told.json")->told(0);
   EXPECT_NE(given.failure.find("right.f_px is not positive"), std::string::npos) << given.failure;
-  EXPECT_EQ(given_rig(truth().rig, changed(0, 450), 1, "told.json")->told(0).failure, "");
+  EXPECT_EQ(given_rig(true_rig().rig, changed(0, 450), 1, "told.json")->told(0).failure, "");
   // Of draws that are larger and larger the first are rigs, the same as without the check.
   int failed = 0;
   for (const double psi_c : {1.0, 1e3, 1e5, 1e200, 1e308}) {
-    const auto drawn = drawn_rigs(truth().rig, *truth().covariance, psi_c, 7, "told.json");
+    const auto drawn = drawn_rigs(true_rig().rig, *true_rig().covariance, psi_c, 7, "told.json");
     for (std::uint32_t draw = 0; draw < 10; ++draw) {
       const ToldRig told = drawn->told(draw);
       if (told.failure.empty()) {
-        EXPECT_TRUE(same_rig(told.rig, RigSampler(truth()).sample(psi_c, 7, draw)));
+        EXPECT_TRUE(same_rig(told.rig, RigSampler(true_rig()).sample(psi_c, 7, draw)));
       }
       failed += told.failure.empty() ? 0 : 1;
       EXPECT_TRUE(psi_c > 1 || told.failure.empty());
@@ -216,12 +218,12 @@ TEST(ToldRigs, ARigThatNoCamerasCanHaveIsAFailureAndNoRig) {
 // A detector reports no corners outside of the image; the others keep their draws.
 TEST(FreshCalibrations, CornersThatNoiseCarriesOutAreLeftOut) {
   const FreshCalibrationOptions noisy{.views = 6, .pixel_sigma_px = 20};
-  const FreshCalibrations calibrations(truth().rig, noisy, 3);
+  const FreshCalibrations calibrations(true_rig().rig, noisy, 3);
   std::size_t left_out = 0;
   for (std::uint32_t draw = 0; draw < 20; ++draw) {
     const BoardObservations seen = calibrations.views_of(draw);
     const BoardObservations all =
-        simulate_board(truth().rig, noisy.board,
+        simulate_board(true_rig().rig, noisy.board,
                        {.seed = 3, .trial = draw, .poses = draw, .frames = 6, .pixel_sigma_px = 20})
             .observations;
     for (const BoardView& view : seen.views) {
@@ -249,8 +251,8 @@ TEST(FreshCalibrations, CornersThatNoiseCarriesOutAreLeftOut) {
 }
 
 TEST(FreshCalibrations, OnlyTheLatestAreKeptAndTheOthersAreTheSameAgain) {
-  const FreshCalibrations few(truth().rig, {.views = 3, .most_kept = 3}, 11),
-      all(truth().rig, {.views = 3}, 11);
+  const FreshCalibrations few(true_rig().rig, {.views = 3, .most_kept = 3}, 11),
+      all(true_rig().rig, {.views = 3}, 11);
   std::vector<std::shared_ptr<const FreshCalibration>> held;
   for (const std::uint32_t draw : {0u, 0x80000000u, 1u, 2u, 3u, 1u, 0u, 0x80000000u, 4u}) {
     held.push_back(few.of(draw));

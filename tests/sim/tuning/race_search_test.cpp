@@ -21,7 +21,7 @@
 
 namespace vernier {
 
-using namespace sim::internal;
+using namespace vernier::sim::internal;
 
 namespace {
 

@@ -15,7 +15,7 @@
 
 namespace vernier {
 
-using namespace sim::internal;
+using namespace vernier::sim::internal;
 
 namespace {
 

@@ -24,7 +24,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const std::string head = "format = \"vernier/world\"\nversion = 1\n";
+const std::string world_head = "format = \"vernier/world\"\nversion = 1\n";
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string fault_of(const WorldDescription& world) {
@@ -32,7 +32,7 @@ std::string fault_of(const WorldDescription& world) {
 }
 
 std::string fault_of_text(const std::string& text) {
-  return test::error_message([&] { parse_world(head + text, "w.toml"); });
+  return test::error_message([&] { parse_world(world_head + text, "w.toml"); });
 }
 
 WorldDescription one_segment() {

@@ -17,7 +17,7 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-constexpr int side = 40;
+constexpr int corners_side = 40;
 
 RandomStream draws_of(std::uint32_t trial, std::uint32_t feature = 0) {
   return RandomStream({.seed = 20, .trial = trial, .feature = feature, .source = 200});
@@ -36,9 +36,10 @@ std::optional<ImageCorner> corner_near(const cv::Mat& image,
 }
 
 test::Wedge random_wedge(double opening_deg, RandomStream& draws) {
-  return {{side / 2 + draws.uniform(-0.5, 0.5), side / 2 + draws.uniform(-0.5, 0.5)},
-          opening_deg * std::numbers::pi / 180,
-          draws.uniform(0, 2 * std::numbers::pi)};
+  return {
+      {corners_side / 2 + draws.uniform(-0.5, 0.5), corners_side / 2 + draws.uniform(-0.5, 0.5)},
+      opening_deg * std::numbers::pi / 180,
+      draws.uniform(0, 2 * std::numbers::pi)};
 }
 
 class CornersByAngle : public testing::TestWithParam<double> {};
@@ -52,7 +53,7 @@ TEST_P(CornersByAngle, LieAtOnePlaceInsideTheTipWhereverThePixelsAre) {
   for (int i = 0; i < n; ++i) {
     RandomStream draws = draws_of(i);
     const test::Wedge wedge = random_wedge(GetParam(), draws);
-    const auto corner = corner_near(test::photograph(wedge, side), 1, wedge.tip);
+    const auto corner = corner_near(test::photograph(wedge, corners_side), 1, wedge.tip);
     ASSERT_TRUE(corner) << "wedge " << i;
     const Eigen::Vector2d axis(std::cos(wedge.towards), std::sin(wedge.towards));
     const Eigen::Vector2d error = corner->pixel_px - wedge.tip;
@@ -79,8 +80,8 @@ TEST_P(CornersByAngle, ErrFromNoiseAsTheirCovarianceSays) {
   int n = 0;
   for (int i = 0; i < wedges; ++i) {
     RandomStream place = draws_of(i);
-    const cv::Mat clean = test::photograph(random_wedge(GetParam(), place), side);
-    const auto truth = corner_near(clean, noise, {side / 2.0, side / 2.0});
+    const cv::Mat clean = test::photograph(random_wedge(GetParam(), place), corners_side);
+    const auto truth = corner_near(clean, noise, {corners_side / 2.0, corners_side / 2.0});
     ASSERT_TRUE(truth);
     for (int k = 0; k < copies; ++k) {
       RandomStream draws = draws_of(i, 1 + k);

@@ -24,12 +24,12 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-constexpr int side = 160;
-constexpr double pi = std::numbers::pi;
+constexpr int segments_side = 160;
+constexpr double half_turn = std::numbers::pi;
 
 /// Bright on dark, or dark on bright.
 GreyLevels image_of(const test::ConvexPolygon& polygon, bool bright) {
-  return test::photographed(side, side, 0.8, [&](const Eigen::Vector2d& p) {
+  return test::photographed(segments_side, segments_side, 0.8, [&](const Eigen::Vector2d& p) {
     return polygon.holds(p) == bright ? 150 : 90;
   });
 }
@@ -217,9 +217,10 @@ TEST(EdgeSegments, LoseLittleToStrongNoise) {
 }
 
 TEST(EdgeSegments, ApproximateACurveWithinTheThreshold) {
-  const auto image = test::photographed(side, side, 0.8, [](const Eigen::Vector2d& p) {
-    return (p - Eigen::Vector2d(80.2, 79.7)).norm() < 60 ? 150 : 90;
-  });
+  const auto image =
+      test::photographed(segments_side, segments_side, 0.8, [](const Eigen::Vector2d& p) {
+        return (p - Eigen::Vector2d(80.2, 79.7)).norm() < 60 ? 150 : 90;
+      });
   const auto points = canny_edges(image);
   std::size_t on_segments = 0, previous = 0;
   for (const double most : {0.08, 0.15, 0.4}) {
@@ -276,7 +277,8 @@ TEST(EdgeSegments, EndShortOfAJunctionWithinWhatTheyState) {
   double z2 = 0;
   for (unsigned trial = 0; trial < 40; ++trial) {
     RandomStream draws({54, trial});
-    const double turn = draws.uniform(0, 2 * pi), opening = draws.uniform(60, 90) * pi / 180;
+    const double turn = draws.uniform(0, 2 * half_turn),
+                 opening = draws.uniform(60, 90) * half_turn / 180;
     const Eigen::Vector2d at(40 + draws.uniform(-0.5, 0.5), 40 + draws.uniform(-0.5, 0.5));
     const Eigen::Vector2d stem(std::cos(turn + opening), std::sin(turn + opening));
     const Eigen::Vector2d bar_normal(-std::sin(turn), std::cos(turn)), across(-stem.y(), stem.x());

@@ -30,7 +30,7 @@ using namespace vernier::stereo::internal;
 namespace {
 
 constexpr int cell = 150, columns = 4, rows = 3, disparity = 20;
-constexpr int width = columns * cell + 40, height = rows * cell;
+constexpr int pair_width = columns * cell + 40, pair_height = rows * cell;
 
 /// Polygons, each growing in the right image by an amount of its own.
 struct GrowingPolygons {
@@ -64,7 +64,7 @@ struct GrowingPolygons {
       const auto level_at = [&](const Eigen::Vector2d& p) {
         return level(right ? Eigen::Vector2d(p.x() + disparity, p.y()) : p, right);
       };
-      return test::with_noise(test::photographed(width, height, 0.8, level_at), 2, draws);
+      return test::with_noise(test::photographed(pair_width, pair_height, 0.8, level_at), 2, draws);
     };
     const GreyLevels left = image(false);
     return {left, image(true)};
@@ -76,8 +76,8 @@ struct GrowingPolygons {
 };
 
 StereoTruth level_truth(double disparity_px) {
-  return stereo_truth({width, height,
-                       std::vector<float>(static_cast<std::size_t>(width) * height,
+  return stereo_truth({pair_width, pair_height,
+                       std::vector<float>(static_cast<std::size_t>(pair_width) * pair_height,
                                           static_cast<float>(disparity_px))});
 }
 
@@ -129,7 +129,7 @@ TEST(PairSamples, LossIsWhatIsErasedAndInThatDirectionAlone) {
   EXPECT_LT(lost_share(whole.losses_to_left), 0.02);
   EXPECT_GT(whole.losses_to_left.size(), 40u);
   // the upper row of polygons, and with it a third of all, is wiped off the right image
-  for (std::size_t i = 0; i < static_cast<std::size_t>(width) * cell; ++i)
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pair_width) * cell; ++i)
     pair.right.values[i] = 120;
   const PairSamples erased = samples_of(pair, level_truth(disparity));
   double upper = 0, all = 0;
@@ -213,8 +213,9 @@ TEST(PairSamples, BadInputIsRefused) {
   RectifiedPair unequal = pair;
   unequal.right = {2, 1, {0, 0}};
   EXPECT_NE(test::error_message([&] { samples_of(unequal, truth); }), "");
-  const RectifiedPair blank{{width, height, std::vector<float>(pair.left.values.size(), 100)},
-                            {width, height, std::vector<float>(pair.left.values.size(), 100)}};
+  const RectifiedPair blank{
+      {pair_width, pair_height, std::vector<float>(pair.left.values.size(), 100)},
+      {pair_width, pair_height, std::vector<float>(pair.left.values.size(), 100)}};
   const PairSamples nothing = samples_of(blank, truth);
   EXPECT_TRUE(nothing.losses.empty() && nothing.lines.empty() && nothing.corners.empty());
 }

@@ -21,7 +21,7 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-constexpr int width = 400, height = 3;
+constexpr int truth_width = 400, truth_height = 3;
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 /// A strip of a plane: disparity d + g x at the left x in [from, to], there in both images whether
@@ -49,9 +49,10 @@ double nearest(const Strips& strips, const Disparity& disparity) {
 
 /// What one eye sees of the strips.
 DisparityMap seen(const Strips& strips, bool in_left, double step = 0) {
-  DisparityMap map{width, height, std::vector<float>(width * height, unknown)};
-  for (int i = 0; i < width * height; ++i) {
-    const double x = i % width;
+  DisparityMap map{truth_width, truth_height,
+                   std::vector<float>(truth_width * truth_height, unknown)};
+  for (int i = 0; i < truth_width * truth_height; ++i) {
+    const double x = i % truth_width;
     double d =
         nearest(strips, [&](const Strip& s) { return in_left ? s.at_left(x) : s.at_right(x); });
     if (step > 0) d = std::round(d / step) * step;
@@ -68,7 +69,7 @@ struct Tally {
 
 Tally compare(const Strips& strips, const StereoTruth& truth) {
   Tally tally;
-  for (int x = 0; x < width; ++x) {
+  for (int x = 0; x < truth_width; ++x) {
     const double d = nearest(strips, [&](const Strip& s) { return s.at_left(x); });
     const double right = x - d;
     const bool at_end = std::any_of(strips.begin(), strips.end(),
@@ -85,10 +86,10 @@ Tally compare(const Strips& strips, const StereoTruth& truth) {
 /// A background of a random slope and strips in front of it, all of disparities above 0.
 Strips random_strips(std::uint32_t trial, int in_front) {
   RandomStream draws({.seed = 61, .trial = trial, .source = 200});
-  Strips strips = {{0, width - 1, 0, draws.uniform(-0.3, 0.3)}};
-  strips[0].d = 10 + std::max(0.0, -strips[0].g * width);
+  Strips strips = {{0, truth_width - 1, 0, draws.uniform(-0.3, 0.3)}};
+  strips[0].d = 10 + std::max(0.0, -strips[0].g * truth_width);
   for (int i = 0; i < in_front; ++i) {
-    const double from = draws.uniform(20, width - 120), to = from + draws.uniform(4, 90);
+    const double from = draws.uniform(20, truth_width - 120), to = from + draws.uniform(4, 90);
     Strip strip{from, to, 0, draws.uniform(-0.86, 0.86)};
     const double behind = std::max(strips[0].at_left(from), strips[0].at_left(to));
     strip.d = behind + draws.uniform(3, 30) - std::min(strip.g * from, strip.g * to);
@@ -128,7 +129,7 @@ TEST(StereoTruth, HidesWhatTheRightTruthSaysToo) {
 TEST(StereoTruth, HidesNothingOfASlantedPlane) {
   for (const double gradient : {0.5, 0.67, 0.86, -0.86}) {
     for (const double step : {0.0, 0.125, 0.25}) {
-      const Strips plane = {{0, width - 1, gradient < 0 ? 344.0 : 0.0, gradient}};
+      const Strips plane = {{0, truth_width - 1, gradient < 0 ? 344.0 : 0.0, gradient}};
       const DisparityMap right = seen(plane, false, step);
       for (const DisparityMap* given : {static_cast<const DisparityMap*>(nullptr), &right}) {
         EXPECT_EQ(compare(plane, stereo_truth(seen(plane, true, step), given)).wrong, 0)

@@ -113,12 +113,12 @@ TEST(WarpedPair, CarriesPointsOfSpaceAsTheCamerasSeeThem) {
 
 /// Of matches away from the border: root mean square error of those within 1 px, the share of
 /// others, and how many.
-struct Errors {
+struct WarpedErrors {
   double rms_px = 0, wrong = 0;
   int matched = 0;
 };
 
-Errors errors(const WarpedPair& warped) {
+WarpedErrors errors(const WarpedPair& warped) {
   const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
   const MatcherScore score =
       evaluate(edges, edge_matcher().match(warped.pair, edges, range), truth_at(warped, edges),
@@ -149,14 +149,14 @@ double largest(const DisparityMap& map) {
 
 TEST(WarpedPair, EdgesAreFoundWhereTheTruthSays) {
   const Scene scene;
-  const Errors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
+  const WarpedErrors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
   ASSERT_GT(exact.matched, 2000);
   double moved_px = 0;
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
     const WarpedPair warped =
         rectified_by(scene.drawn(1, trial), scene.rig, scene.geometry, scene.pair, scene.truth);
     moved_px = std::max(moved_px, largest(warped.vertical_px));
-    const Errors found = errors(warped);
+    const WarpedErrors found = errors(warped);
     EXPECT_GT(found.matched, 0.9 * exact.matched);
     EXPECT_LT(found.rms_px, exact.rms_px + 0.15);
     EXPECT_LT(found.wrong, exact.wrong + 0.06);
@@ -207,14 +207,14 @@ TEST(WarpedPair, LongEdgesAreFoundAtTheirCrossing) {
 
 TEST(WarpedPair, RepairTakesMovedRowsAway) {
   const Scene scene;
-  const Errors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
+  const WarpedErrors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
   WarpedPair moved = with_shifted_rows(scene.pair, scene.truth, 2);
   EXPECT_EQ(largest(moved.vertical_px), 2);
   const VerticalField field = vertical_field(moved.pair, range);
   ASSERT_TRUE(field.significant);
   repair(moved, field);
   EXPECT_LT(largest(moved.vertical_px), 0.1);
-  const Errors repaired = errors(moved);
+  const WarpedErrors repaired = errors(moved);
   EXPECT_LT(repaired.rms_px, exact.rms_px + 0.03);
   EXPECT_LT(repaired.wrong, exact.wrong + 0.01);
 }

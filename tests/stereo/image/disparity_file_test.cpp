@@ -19,7 +19,7 @@ using namespace vernier::stereo;
 
 namespace {
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_known = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
 /// This machine's bytes of values, turned round for the other order.
@@ -82,8 +82,8 @@ class DisparityFile : public testing::Test {
 };
 
 TEST_F(DisparityFile, ReadsPfmOfBothByteOrdersFromTheBottom) {
-  const std::vector<float> bottom_up = {4.5f, infinite, -1, 1, 0, unknown};
-  const std::vector<float> wanted = {1, 0, unknown, 4.5f, unknown, -1};
+  const std::vector<float> bottom_up = {4.5f, infinite, -1, 1, 0, not_known};
+  const std::vector<float> wanted = {1, 0, not_known, 4.5f, not_known, -1};
   expect(folder_.write("little", "Pf\n3 2\n-1.0\n" + bytes_of(bottom_up, false)), wanted);
   expect(folder_.write("big", "Pf\n3 2\n1.0\n" + bytes_of(bottom_up, true)), wanted);
   expect(folder_.write("middlebury", "Pf 3 2 -0.003922\n" + bytes_of(bottom_up, false)), wanted);
@@ -92,24 +92,25 @@ TEST_F(DisparityFile, ReadsPfmOfBothByteOrdersFromTheBottom) {
 
 TEST_F(DisparityFile, ReadsImagesByTheirScale) {
   const cv::Mat bytes = (cv::Mat_<uchar>(2, 3) << 0, 8, 20, 255, 1, 16);
-  expect(save("8.png", bytes), {unknown, 1, 2.5f, 31.875f, 0.125f, 2}, {.scale = 8});
-  expect(save("8.pgm", bytes), {unknown, 8, 20, 255, 1, 16});
+  expect(save("8.png", bytes), {not_known, 1, 2.5f, 31.875f, 0.125f, 2}, {.scale = 8});
+  expect(save("8.pgm", bytes), {not_known, 8, 20, 255, 1, 16});
   cv::Mat colours;
   cv::merge(std::vector<cv::Mat>{bytes, bytes, bytes}, colours);
-  expect(save("grey_as_colour.png", colours), {unknown, 8, 20, 255, 1, 16});
+  expect(save("grey_as_colour.png", colours), {not_known, 8, 20, 255, 1, 16});
   const cv::Mat words = (cv::Mat_<ushort>(2, 3) << 0, 256, 384, 65535, 1, 25600);
-  expect(save("16.png", words), {unknown, 1, 1.5f, 65535 / 256.f, 1 / 256.f, 100}, {.scale = 256});
+  expect(save("16.png", words), {not_known, 1, 1.5f, 65535 / 256.f, 1 / 256.f, 100},
+         {.scale = 256});
 }
 
 TEST_F(DisparityFile, ReadsNumpyArraysOfManyTypes) {
-  const std::vector<float> real = {1, unknown, 2.25f, infinite, 0, -3};
-  const std::vector<float> wanted_real = {1, unknown, 2.25f, unknown, 0, -3};
+  const std::vector<float> real = {1, not_known, 2.25f, infinite, 0, -3};
+  const std::vector<float> wanted_real = {1, not_known, 2.25f, not_known, 0, -3};
   expect(folder_.write("<f4", npy("<f4", bytes_of(real, false))), wanted_real);
   expect(folder_.write(">f4", npy(">f4", bytes_of(real, true))), wanted_real);
   const std::vector<double> wide(real.begin(), real.end());
   expect(folder_.write("<f8", npy("<f8", bytes_of(wide, false))), wanted_real);
   expect(folder_.write(">f8", npy(">f8", bytes_of(wide, true))), wanted_real);
-  const std::vector<float> wanted = {unknown, 1, 2, 3, 100, 127};
+  const std::vector<float> wanted = {not_known, 1, 2, 3, 100, 127};
   const auto expect_whole = [&](const std::string& name, auto zero) {
     const std::vector<decltype(zero)> whole = {zero, 1, 2, 3, 100, 127};
     const bool one_byte = sizeof(zero) == 1;
@@ -132,14 +133,14 @@ TEST_F(DisparityFile, TakesOutWhatTheOptionsCallUnknown) {
   const auto real =
       folder_.write("r", npy("<f4", bytes_of<float>({-16, 0, 16, 8, -8, 1e30f}, false)));
   expect(real, {-1, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16});
-  expect(real, {-1, unknown, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .zero_is_unknown = true});
-  expect(real, {unknown, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .min_px = -0.5});
+  expect(real, {-1, not_known, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .zero_is_unknown = true});
+  expect(real, {not_known, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .min_px = -0.5});
   const auto whole =
       folder_.write("w", npy("|i1", bytes_of<std::int8_t>({-1, 0, 1, 2, 3, 4}, false)));
   expect(whole, {-1, 0, 1, 2, 3, 4}, {.zero_is_unknown = false});
   const auto wide =
       folder_.write("d", npy("<f8", bytes_of<double>({1e300, -1e300, 1, 2, 3, 4}, false)));
-  expect(wide, {unknown, unknown, 1, 2, 3, 4});
+  expect(wide, {not_known, not_known, 1, 2, 3, 4});
   EXPECT_NE(test::error_message([&] { read_disparity(wide, {.scale = 0}); }).find("positive"),
             std::string::npos);
 }
@@ -214,7 +215,7 @@ TEST_F(DisparityFile, RefusesOtherImages) {
 
 TEST_F(DisparityFile, ReadsBackWhatItWrote) {
   DisparityMap map{5, 3, {}};
-  for (int i = 0; i < 15; ++i) map.values.push_back(i % 4 == 0 ? unknown : 0.1f * i * i - 2);
+  for (int i = 0; i < 15; ++i) map.values.push_back(i % 4 == 0 ? not_known : 0.1f * i * i - 2);
   for (const char* name : {"map.pfm", "map.npy"}) {
     write_disparity(folder_.path() / name, map);
     const DisparityMap read = read_disparity(folder_.path() / name);

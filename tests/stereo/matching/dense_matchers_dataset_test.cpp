@@ -27,19 +27,19 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-struct Scene {
+struct DenseScene {
   RectifiedPair pair;
   std::vector<EdgePoint> edges;
   std::vector<TruthAtEdge> truth;
   DisparityRange range;
 };
 
-std::vector<Scene> scenes_of(const std::filesystem::path& folder) {
+std::vector<DenseScene> scenes_of(const std::filesystem::path& folder) {
   const test::Folder scratch;
-  std::vector<Scene> scenes;
+  std::vector<DenseScene> scenes;
   for (const test::StereoScene& scene : test::middlebury_scenes(folder)) {
     const StereoSceneFile files = test::files_of(scene, scratch.path());
-    Scene read;
+    DenseScene read;
     read.pair = {read_grey_levels(files.left), read_grey_levels(files.right)};
     read.edges = canny_edges(read.pair.left);
     const StereoTruth truth =
@@ -59,7 +59,7 @@ struct Score {
   double bad_1_smooth = 0, bad_1_step = 0;  ///< away from discontinuities and at them
 };
 
-Score score(const Scene& scene, const Matcher& matcher) {
+Score score(const DenseScene& scene, const Matcher& matcher) {
   const auto found = matcher.match(scene.pair, scene.edges, scene.range);
   const float min_slope = static_cast<float>(std::sin(5 * std::numbers::pi / 180));
   double shown = 0, all = 0, mismatched = 0;
@@ -80,9 +80,9 @@ Score score(const Scene& scene, const Matcher& matcher) {
           bad_1[1] / matched[1]};
 }
 
-Score mean_score(const std::vector<Scene>& scenes, const Matcher& matcher) {
+Score mean_score(const std::vector<DenseScene>& scenes, const Matcher& matcher) {
   Score mean;
-  for (const Scene& scene : scenes) {
+  for (const DenseScene& scene : scenes) {
     const Score one = score(scene, matcher);
     const double part = 1.0 / static_cast<double>(scenes.size());
     mean.density += part * one.density;
@@ -97,7 +97,7 @@ Score mean_score(const std::vector<Scene>& scenes, const Matcher& matcher) {
 TEST(DenseMatchersOnMiddlebury, AreAsGoodAsTheirBestSettings) {
   const auto folder = test::data_folder();
   if (!folder) GTEST_SKIP() << "VERNIER_DATA is not set";
-  const std::vector<Scene> scenes = scenes_of(*folder);
+  const std::vector<DenseScene> scenes = scenes_of(*folder);
   ASSERT_EQ(scenes.size(), 11u);
   const auto record = [&](const std::string& label, const Matcher& matcher) {
     const Score s = mean_score(scenes, matcher);

@@ -25,12 +25,12 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-constexpr int width = 220, height = 60;
+constexpr int scene_width = 220, scene_height = 60;
 
 /// Random grey of every pixel of a plane that is wider than the images.
-GreyLevels texture(int from, int columns = width) {
-  GreyLevels grey{columns, height, {}};
-  for (int y = 0; y < height; ++y) {
+GreyLevels texture(int from, int columns = scene_width) {
+  GreyLevels grey{columns, scene_height, {}};
+  for (int y = 0; y < scene_height; ++y) {
     for (int x = 0; x < columns; ++x) {
       RandomStream draws({.seed = 71,
                           .trial = static_cast<std::uint32_t>(x + from + 1000),
@@ -67,18 +67,18 @@ const std::vector<std::pair<std::string, MapOf>>& maps() {
 /// Share of the columns from `first` up to `last` that have the disparity.
 double share(const DisparityMap& map, int first, int last, float disparity) {
   int right = 0;
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0; y < scene_height; ++y) {
     for (int x = first; x < last; ++x) right += std::abs(map(x, y) - disparity) < 0.3f;
   }
-  return static_cast<double>(right) / ((last - first) * height);
+  return static_cast<double>(right) / ((last - first) * scene_height);
 }
 
 int known_outside(const DisparityMap& map, float least, float most) {
   int count = 0;
-  for (int i = 0; i < width * height; ++i) {
+  for (int i = 0; i < scene_width * scene_height; ++i) {
     const float d = map.values[static_cast<std::size_t>(i)];
-    const float right = static_cast<float>(i % width) - d;
-    count += d < least || d > most || right < -0.5f || right > width - 0.5f;
+    const float right = static_cast<float>(i % scene_width) - d;
+    count += d < least || d > most || right < -0.5f || right > scene_width - 0.5f;
   }
   return count;
 }
@@ -87,23 +87,23 @@ int known_outside(const DisparityMap& map, float least, float most) {
 TEST(DenseMatchers, MatchTheBandBesideTheBorderToo) {
   for (const auto& [label, map_of] : maps()) {
     const DisparityMap map = map_of(plane(9), {0, 40});
-    ASSERT_EQ(map.values.size(), static_cast<std::size_t>(width * height));
-    EXPECT_GT(share(map, 0, width, 9), 0.93) << label;
+    ASSERT_EQ(map.values.size(), static_cast<std::size_t>(scene_width * scene_height));
+    EXPECT_GT(share(map, 0, scene_width, 9), 0.93) << label;
     EXPECT_GT(share(map, 12, 47, 9), 0.97) << label;
-    EXPECT_GT(share(map, width - 10, width, 9), 0.85) << label;
+    EXPECT_GT(share(map, scene_width - 10, scene_width, 9), 0.85) << label;
     EXPECT_EQ(known_outside(map, 0, 40.5), 0) << label;
   }
 }
 
 TEST(DenseMatchers, SearchTheRangeThatIsAskedFor) {
   for (const auto& [label, map_of] : maps()) {
-    EXPECT_GT(share(map_of(plane(30), {3, 30}), 33, width, 30), 0.95) << label;
-    EXPECT_GT(share(map_of(plane(5), {5, 6}), 8, width, 5), 0.95) << label;
-    EXPECT_GT(share(map_of(plane(-12), {-20, -5}), 0, width - 15, -12), 0.95) << label;
+    EXPECT_GT(share(map_of(plane(30), {3, 30}), 33, scene_width, 30), 0.95) << label;
+    EXPECT_GT(share(map_of(plane(5), {5, 6}), 8, scene_width, 5), 0.95) << label;
+    EXPECT_GT(share(map_of(plane(-12), {-20, -5}), 0, scene_width - 15, -12), 0.95) << label;
     // 33 is among the 32 disparities from 3 that OpenCV searches, but not asked for
     const DisparityMap beyond = map_of(plane(33), {3, 30});
     EXPECT_EQ(known_outside(beyond, 3, 30.5), 0) << label;
-    EXPECT_EQ(share(beyond, 0, width, 33), 0) << label;
+    EXPECT_EQ(share(beyond, 0, scene_width, 33), 0) << label;
   }
 }
 
@@ -111,19 +111,19 @@ TEST(DenseMatchers, SearchTheRangeThatIsAskedFor) {
 TEST(DenseMatchers, KeepSlantedPlanesWhole) {
   constexpr float gradient = 0.2f;
   RectifiedPair pair = plane(0);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float at = std::min(static_cast<float>(x) / (1 - gradient), width - 1.001f);
+  for (int y = 0; y < scene_height; ++y) {
+    for (int x = 0; x < scene_width; ++x) {
+      const float at = std::min(static_cast<float>(x) / (1 - gradient), scene_width - 1.001f);
       const int first = static_cast<int>(at);
       const float part = at - static_cast<float>(first);
-      pair.right.values[static_cast<std::size_t>(y * width + x)] =
+      pair.right.values[static_cast<std::size_t>(y * scene_width + x)] =
           (1 - part) * pair.left(first, y) + part * pair.left(first + 1, y);
     }
   }
   const auto right_ones = [&](const DisparityMap& map) {
     int right = 0;
-    for (int i = 0; i < width * height; ++i) {
-      right += std::abs(map.values[static_cast<std::size_t>(i)] - gradient * (i % width)) < 1;
+    for (int i = 0; i < scene_width * scene_height; ++i) {
+      right += std::abs(map.values[static_cast<std::size_t>(i)] - gradient * (i % scene_width)) < 1;
     }
     return right;
   };
@@ -133,7 +133,7 @@ TEST(DenseMatchers, KeepSlantedPlanesWhole) {
   const DisparityRange range{0, 47};
   EXPECT_GT(right_ones(bm_map(pair, range)), 0.9 * right_ones(bm_map(pair, range, bm_all)));
   EXPECT_GT(right_ones(sgbm_map(pair, range)), 0.9 * right_ones(sgbm_map(pair, range, sgbm_all)));
-  EXPECT_GT(right_ones(bm_map(pair, range)), 0.4 * width * height);
+  EXPECT_GT(right_ones(bm_map(pair, range)), 0.4 * scene_width * scene_height);
 }
 
 TEST(DenseMatchers, AreTheSameForAnyNumberOfThreads) {

@@ -26,7 +26,7 @@ using namespace vernier::stereo::internal;
 namespace {
 
 namespace fs = std::filesystem;
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_match = std::numeric_limits<float>::quiet_NaN();
 
 /// Programs are shell scripts written here; the system's temporary folder is one of the test, with
 /// blanks and a placeholder in its name, and has to be empty again after every run.
@@ -43,7 +43,7 @@ class ExternalMatcher : public testing::Test {
     }
     pair_.left.width_px = pair_.right.width_px = 4;
     pair_.left.height_px = pair_.right.height_px = 3;
-    map_ = {4, 3, {1, 2, 3, unknown, 0.5f, 1.25f, 3, 2, 1, 0, 2, 1}};
+    map_ = {4, 3, {1, 2, 3, no_match, 0.5f, 1.25f, 3, 2, 1, 0, 2, 1}};
   }
   ~ExternalMatcher() override {
     if (tmpdir_before_.empty()) {
@@ -152,7 +152,7 @@ TEST_F(ExternalMatcher, MayWriteOtherFormats) {
   small.at<uchar>(0, 0) = 0;
   cv::imwrite((folder_.path() / "8.png").string(), small);
   std::vector<float> two(12, 2);
-  two[0] = unknown;
+  two[0] = no_match;
   expect_same(map_of(copy("{output.png}", folder_.path() / "8.png")), two);
 }
 
@@ -160,7 +160,7 @@ TEST_F(ExternalMatcher, KnowsNothingWhereTheMapIsOutsideTheRange) {
   map_.values[0] = -1, map_.values[1] = -16, map_.values[2] = 9, map_.values[4] = 3.4F,
   map_.values[5] = 3.6F;
   write_disparity(folder_.path() / "map.pfm", map_);
-  map_.values[0] = map_.values[1] = map_.values[2] = map_.values[5] = unknown;
+  map_.values[0] = map_.values[1] = map_.values[2] = map_.values[5] = no_match;
   const std::string program = script("copy", "cp " + folder_.path().string() + "/map.pfm \"$3\"\n");
   MapRange told;
   expect_same(map_of(program + " {left} {right} {output}",

@@ -26,7 +26,7 @@ using namespace vernier::stereo;
 
 namespace {
 
-constexpr int width = 240, height = 200;
+constexpr int noise_width = 240, noise_height = 200;
 constexpr double noise = 2;
 
 /// Two pinholes whose axes converge by 1 degree: their images are resampled at all sub-pixel
@@ -37,7 +37,7 @@ Rig converging_rig() {
     Camera camera;
     camera.name = name;
     camera.model = Pinhole{};
-    camera.size_px = {width, height};
+    camera.size_px = {noise_width, noise_height};
     camera.parameters = Eigen::Vector4d(300, 1, 119.5, 99.5);
     rig.cameras.push_back(camera);
   }
@@ -49,11 +49,13 @@ Rig converging_rig() {
 /// The slanted edge of contrast 60, with white noise by seed; 0: none.
 GreyLevels edge_image(std::uint64_t seed) {
   const test::Step step{{120, 100}, 0.3};
-  GreyLevels image = test::sampled(width, height, [&](const auto& p) { return step.level(p); });
+  GreyLevels image =
+      test::sampled(noise_width, noise_height, [&](const auto& p) { return step.level(p); });
   if (seed == 0) return image;
   vernier::internal::RandomStream draws({.seed = seed});
-  const Eigen::VectorXd n = draws.normals(width * height);
-  for (int i = 0; i < width * height; ++i) image.values[std::size_t(i)] += float(noise * n[i]);
+  const Eigen::VectorXd n = draws.normals(noise_width * noise_height);
+  for (int i = 0; i < noise_width * noise_height; ++i)
+    image.values[std::size_t(i)] += float(noise * n[i]);
   return image;
 }
 
@@ -81,7 +83,7 @@ std::vector<double> normalised_errors(bool of_raw) {
   return z;
 }
 
-double rms(const std::vector<double>& z) {
+double rms_of(const std::vector<double>& z) {
   double squares = 0;
   for (const double x : z) squares += x * x;
   return std::sqrt(squares / double(z.size()));
@@ -91,15 +93,15 @@ double rms(const std::vector<double>& z) {
 TEST(RectifiedNoise, EdgesScatterByTheNoiseOfTheRawImage) {
   const std::vector<double> z = normalised_errors(true);
   ASSERT_GT(z.size(), 3000u);
-  RecordProperty("rms_z", std::to_string(rms(z)));
-  EXPECT_GT(rms(z), 0.85);
-  EXPECT_LT(rms(z), 1.15);
+  RecordProperty("rms_z", std::to_string(rms_of(z)));
+  EXPECT_GT(rms_of(z), 0.85);
+  EXPECT_LT(rms_of(z), 1.15);
 }
 
 TEST(RectifiedNoise, TheRectifiedImageAloneShowsTooLittle) {
   const std::vector<double> z = normalised_errors(false);
-  RecordProperty("rms_z", std::to_string(rms(z)));
-  EXPECT_GT(rms(z), 1.4);
+  RecordProperty("rms_z", std::to_string(rms_of(z)));
+  EXPECT_GT(rms_of(z), 1.4);
 }
 
 TEST(RectifiedNoise, EdgesAreTheSameWhateverTheNoise) {

@@ -24,7 +24,7 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-const std::set<std::string> tuned = {"barn2", "teddy", "Art", "motorcycle"};
+const std::set<std::string> tuned_pairs = {"barn2", "teddy", "Art", "motorcycle"};
 
 /// The right image's content moved down by dy and turned about the middle, clockwise as seen.
 cv::Mat moved(const cv::Mat& image, double dy_px, double roll_deg) {
@@ -148,7 +148,7 @@ TEST(VerticalFieldOnMiddlebury, FindsWhatIsAdded) {
       const VerticalField field = vertical_field(pair, range);
       const double roll_px = std::tan(added.roll_deg * M_PI / 180) * right.cols;
       const Eigen::Vector3d found = field.coefficients_px - before.coefficients_px;
-      const bool of_others = tuned.count(scene.name) == 0;
+      const bool of_others = tuned_pairs.count(scene.name) == 0;
       offset[of_others].add(found[0] - added.dy_px);
       own[of_others].add(field.coefficients_px[0] - added.dy_px);
       tilt[of_others].add(found[1] - roll_px);

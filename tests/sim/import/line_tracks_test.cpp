@@ -30,8 +30,8 @@ namespace vernier {
 using namespace vernier::internal;
 using namespace vernier::sim;
 using namespace vernier::sim::internal;
-using vernier::test::error_message;
-using vernier::test::Folder;
+using test::error_message;
+using test::Folder;
 
 namespace {
 

@@ -7,7 +7,9 @@
 
 #include "sim/import/mesh.h"
 
-namespace vernier::sim::internal::test {
+namespace vernier::test {
+
+using sim::internal::Mesh;
 
 /// Adds a rectangle that faces along u x v, in nu x nv pieces of two triangles each, whose vertices
 /// are its own.
@@ -89,4 +91,4 @@ inline Mesh turned_and_scaled(Mesh mesh, int up, double unit_m) {
   return mesh;
 }
 
-}  // namespace vernier::sim::internal::test
+}  // namespace vernier::test

@@ -9,8 +9,8 @@ usage() {
   cat <<'USAGE'
 usage: scripts/test.sh [--quick] [--apart] [--measure]
   --quick     skip the unit tests with address and undefined-behaviour sanitizers
-  --apart     compile each source of the libraries and of the program alone, not several in one
-              unit: twice the time, and a missing include is an error
+  --apart     compile each source of the libraries, of the program and of the tests alone, not several
+              in one unit: more than twice the time, and a missing include is an error
   --measure   measure the compile time of each unit that is one source (with --apart: of all) and
               fail if one is too slow; the build folder keeps this setting; units from the compiler cache are not measured unless
               CCACHE_RECACHE=1 is in the environment

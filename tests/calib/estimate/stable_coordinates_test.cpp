@@ -135,7 +135,7 @@ TEST(StableCoordinates, SampledProjectionsOfANarrowLensAreTheLinearOnes) {
     for (const auto fixed_to : {PointFixedTo::boards, PointFixedTo::first_camera}) {
       if (camera == 0 && fixed_to == PointFixedTo::first_camera) continue;  // tens of pixels
       std::vector<FixedPoint> points;
-      for (const Eigen::Vector2d q : {Eigen::Vector2d(320, 240), {100, 100}, {500, 400}}) {
+      for (const Eigen::Vector2d& q : {Eigen::Vector2d(320, 240), {100, 100}, {500, 400}}) {
         points.push_back({distance_m * unproject(narrow().rig.cameras[camera], q)});
       }
       const ProjectionUncertainty linear(joint, camera, fixed_to);

@@ -62,11 +62,11 @@ TEST(Census, SaysWhichPixelsAreBrighter) {
 }
 
 /// A few points in two images.
-class MatchSupport : public testing::Test {
+class EdgeSupportCosts : public testing::Test {
  protected:
   static constexpr int width = 90, height = 24, disparities = 32;
 
-  MatchSupport() {
+  EdgeSupportCosts() {
     RandomStream draws({.seed = 202, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
     std::vector<int> x, y;
     for (int row = 0; row < height; ++row) {
@@ -103,7 +103,7 @@ class MatchSupport : public testing::Test {
   std::vector<int> first;
 };
 
-TEST_F(MatchSupport, CostsAreHammingDistances) {
+TEST_F(EdgeSupportCosts, CostsAreHammingDistances) {
   const CensusCosts at{points, left, mirror, first, Facing::opposite, disparities};
   std::vector<std::int16_t> costs(disparities);
   for (int p = 0; p < points.size(); ++p) {
@@ -114,7 +114,7 @@ TEST_F(MatchSupport, CostsAreHammingDistances) {
   }
 }
 
-TEST_F(MatchSupport, AViewStretchedByOneIsTheImageItself) {
+TEST_F(EdgeSupportCosts, AViewStretchedByOneIsTheImageItself) {
   // The least of it and the plain costs, without a penalty, are the plain costs; and where the
   // plain image is of something else, those of the view.
   const GreyLevels own = random_image(width, height, 204);
@@ -131,7 +131,7 @@ TEST_F(MatchSupport, AViewStretchedByOneIsTheImageItself) {
   }
 }
 
-TEST_F(MatchSupport, NeighboursAreTheNearestInReach) {
+TEST_F(EdgeSupportCosts, NeighboursAreTheNearestInReach) {
   for (int p = 0; p < points.size(); ++p) {
     const auto k = static_cast<std::size_t>(p);
     const auto nearest = [&](int x, int y, int reach) {
@@ -158,7 +158,7 @@ TEST_F(MatchSupport, NeighboursAreTheNearestInReach) {
   }
 }
 
-TEST_F(MatchSupport, WinnersAreThoseOfTheRecursion) {
+TEST_F(EdgeSupportCosts, WinnersAreThoseOfTheRecursion) {
   const SupportOptions options;
   const auto n = static_cast<std::size_t>(points.size());
   std::vector<std::vector<int>> sums(n, std::vector<int>(disparities, 0));

@@ -192,6 +192,10 @@ class BuildCost(InFolder):
         measured = [(1, "compiled", unit, self.RIG) for unit in units]
         cached = [(0.01, "cached", unit, self.RIG) for unit in units]
         self.assertEqual(self.check(measured[:18], units=units)[0], 0)  # 90 %
+        later = [f"tests/CMakeFiles/{part}.dir/{i}.o" for part in ("calib_sanitized", "vernier_sanitized_headers")
+                 for i in range(5)]
+        self.assertEqual(self.check(measured[:18], units=units + later)[0], 0)
+        self.assertEqual(self.check(measured[:18], units=units + ["tests/CMakeFiles/calib_test.dir/1.o"])[0], 2)
         code, said = self.check(measured[:17] + cached[17:], units=units)
         self.assertEqual(code, 2)
         self.assertIn("too few units were measured: 17 of 20, 90% are needed", said)

@@ -71,6 +71,9 @@ void clear_input_folder();
 /// The bytes of a file of that folder, such as a writer has written.
 std::string file_bytes(const std::filesystem::path& file);
 
+/// The line that parts the files of a pair in one input.
+inline constexpr std::string_view right_file = "---";
+
 /// The bytes up to the first line that is `separator`, and those behind it.
 std::pair<std::string_view, std::string_view> split_at_line(std::string_view bytes,
                                                             std::string_view separator);

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "calib/base/json_whole.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -33,12 +33,9 @@ double JsonNode::number() const {
 
 int JsonNode::integer() const {
   if (!json_.is_number_integer()) throw Error(place(), "is not an integer", "");
-  const auto whole = json_.get<std::int64_t>();
-  const bool wrapped = json_.is_number_unsigned() && whole < 0;
-  if (wrapped || whole != static_cast<int>(whole)) {
-    throw Error(place(), json_.dump() + " is too large a whole number", "correct it");
-  }
-  return static_cast<int>(whole);
+  const auto whole = json_whole<int>(json_);
+  if (!whole) throw Error(place(), json_.dump() + " is too large a whole number", "correct it");
+  return *whole;
 }
 
 std::string JsonNode::text() const {

@@ -17,11 +17,8 @@ namespace {
 
 using namespace vernier::internal;
 
-/// The files of a pair in one input are parted by this line.
-constexpr std::string_view right_sensor = "---";
-
 void run_asl_sensor(std::string_view bytes) {
-  const auto [left, right] = split_at_line(bytes, right_sensor);
+  const auto [left, right] = split_at_line(bytes, right_file);
   std::vector<std::filesystem::path> files{input_file(left, "left.yaml")};
   if (!right.empty()) files.push_back(input_file(right, "right.yaml"));
   const auto read = accepted([&] { return read_asl_sensors(files); });
@@ -44,7 +41,7 @@ std::vector<std::string> asl_sensor_seeds() {
            distortion + "\ndistortion_coefficients: [-0.28, 0.07, 0.0002, 1.8e-05]\n";
   };
   return {sensor("radial-tangential", 0), sensor("equidistant", 0), sensor("none", 0),
-          sensor("radtan", 0) + std::string(right_sensor) + "\n" + sensor("radtan", 0.1)};
+          sensor("radtan", 0) + std::string(right_file) + "\n" + sensor("radtan", 0.1)};
 }
 
 const Registered registered_asl_sensor{

@@ -18,9 +18,6 @@ namespace {
 
 using namespace vernier::internal;
 
-/// The files of a pair in one input are parted by this line.
-constexpr std::string_view right_file = "---";
-
 void run_ros_camera_info(std::string_view bytes) {
   const auto both = split_at_line(bytes, right_file);
   const std::string_view left = both.first, right = both.second;

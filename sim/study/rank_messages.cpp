@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib/base/json_whole.h"
 #include "calib/error.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
@@ -50,16 +51,11 @@ struct RankTexts {
   throw Error("a message between ranks", "cannot be read", "run the same build everywhere");
 }
 
-/// A whole number in its range: nlohmann's conversion would cut others off.
 template <typename Whole>
 Whole whole(const RankJson& json) {
-  const auto in_range = [](auto number) {
-    if (!std::in_range<Whole>(number)) throw_unreadable();
-    return static_cast<Whole>(number);
-  };
-  if (!json.is_number_integer()) throw_unreadable();
-  return json.is_number_unsigned() ? in_range(json.get<std::uint64_t>())
-                                   : in_range(json.get<std::int64_t>());
+  const auto number = vernier::internal::json_whole<Whole>(json);
+  if (!number) throw_unreadable();
+  return *number;
 }
 
 std::vector<int> whole_numbers(const RankJson& json) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/base/fingerprint.h"
+#include "calib/base/json_whole.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -49,10 +50,9 @@ class TrialRow {
   std::int64_t whole(std::int64_t low, std::int64_t high) {
     const TrialJson& field = next();
     if (!field.is_number_integer()) fail("a field is no whole number");
-    if (field.is_number_unsigned() && field.get<std::uint64_t>() > INT64_MAX) fail(beyond);
-    const auto value = field.get<std::int64_t>();
-    if (value < low || value > high) fail(beyond);
-    return value;
+    const auto value = json_whole<std::int64_t>(field);
+    if (!value || *value < low || *value > high) fail(beyond);
+    return *value;
   }
   int count() { return static_cast<int>(whole(0, std::numeric_limits<int>::max())); }
   double real() { return real(next()); }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 #include "stereo/grey_levels.h"
@@ -15,6 +16,11 @@ inline GreyLevels grey_levels(const cv::Mat& image) {
   cv::Mat values;
   image.convertTo(values, CV_32F);
   return {values.cols, values.rows, {values.begin<float>(), values.end<float>()}};
+}
+
+/// The grey value at a pixel, beyond the image that of the nearest one.
+inline float clamped(const GreyLevels& image, int x, int y) {
+  return image(std::clamp(x, 0, image.width_px - 1), std::clamp(y, 0, image.height_px - 1));
 }
 
 /// The other way, CV_32F.

@@ -10,18 +10,13 @@
 #include "calib/base/toml_grammar.h"
 #include "calib/base/toml_writer.h"
 #include "tests/support/error_message.h"
+#include "tests/support/texts.h"
 
 namespace vernier::internal {
 namespace {
 
 std::string toml_complaint(const std::string& text) {
   return test::error_message([&] { parse_toml(text, "a.toml"); });
-}
-
-std::string repeated(const std::string& word, std::size_t times) {
-  std::string text;
-  for (std::size_t i = 0; i < times; ++i) text += word;
-  return text;
 }
 
 TEST(TomlReader, ReadsAllOfTheLanguageButDates) {
@@ -88,14 +83,14 @@ TEST(TomlWriter, WritesWhatItReads) {
 }
 
 TEST(TomlReader, RefusesDepth) {
-  EXPECT_EQ(toml_complaint("a = " + repeated("[", 31) + repeated("]", 31)), "");
+  EXPECT_EQ(toml_complaint("a = " + test::repeated("[", 31) + test::repeated("]", 31)), "");
   const std::string fault = "a.toml:1: is nested more than 32 levels deep; flatten it";
   for (const std::size_t depth : {33U, 50'000U, 1'000'000U}) {
-    EXPECT_EQ(toml_complaint("a" + repeated(".a", depth) + " = 1"), fault);
-    EXPECT_EQ(toml_complaint("[a" + repeated(".a", depth) + "]"), fault);
-    EXPECT_EQ(toml_complaint("[[a" + repeated(".a", depth) + "]]"), fault);
-    EXPECT_EQ(toml_complaint("a = " + repeated("[", depth)), fault);
-    EXPECT_EQ(toml_complaint("a = " + repeated("{a=", depth)), fault);
+    EXPECT_EQ(toml_complaint("a" + test::repeated(".a", depth) + " = 1"), fault);
+    EXPECT_EQ(toml_complaint("[a" + test::repeated(".a", depth) + "]"), fault);
+    EXPECT_EQ(toml_complaint("[[a" + test::repeated(".a", depth) + "]]"), fault);
+    EXPECT_EQ(toml_complaint("a = " + test::repeated("[", depth)), fault);
+    EXPECT_EQ(toml_complaint("a = " + test::repeated("{a=", depth)), fault);
   }
   EXPECT_NE(
       toml_complaint("[a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a]\nb.b.b.b.b.b.b.b.b.b.b.b.b.b = [[[1]]]"),

@@ -7,18 +7,13 @@
 #include <cstddef>
 
 #include "tests/support/error_message.h"
+#include "tests/support/texts.h"
 
 namespace vernier::internal {
 namespace {
 
 std::string yaml_complaint(const std::string& text, const YamlLimits& limits = {}) {
   return test::error_message([&] { parse_yaml(text, "a.yaml", limits); });
-}
-
-std::string repeated_text(const std::string& word, std::size_t times) {
-  std::string text;
-  for (std::size_t i = 0; i < times; ++i) text += word;
-  return text;
 }
 
 TEST(YamlReader, ReadsMapsListsAndScalarsWithTheirLines) {
@@ -47,13 +42,13 @@ TEST(YamlReader, ReadsOpenCvsFiles) {
 }
 
 TEST(YamlReader, RefusesDepth) {
-  EXPECT_EQ(yaml_complaint(repeated_text("[", 32) + repeated_text("]", 32)), "");
+  EXPECT_EQ(yaml_complaint(test::repeated("[", 32) + test::repeated("]", 32)), "");
   for (const std::size_t depth : {40U, 10'000U, 200'000U}) {
-    EXPECT_EQ(yaml_complaint("a: " + repeated_text("[", depth)),
+    EXPECT_EQ(yaml_complaint("a: " + test::repeated("[", depth)),
               "a.yaml:1: is nested more than 32 levels deep; name another file");
-    EXPECT_NE(yaml_complaint(repeated_text("{a: ", depth)).find("is nested"), std::string::npos);
-    EXPECT_NE(yaml_complaint(repeated_text("- ", depth)).find("is nested"), std::string::npos);
-    EXPECT_NE(yaml_complaint(repeated_text("? ", depth)), "");
+    EXPECT_NE(yaml_complaint(test::repeated("{a: ", depth)).find("is nested"), std::string::npos);
+    EXPECT_NE(yaml_complaint(test::repeated("- ", depth)).find("is nested"), std::string::npos);
+    EXPECT_NE(yaml_complaint(test::repeated("? ", depth)), "");
   }
 }
 

@@ -23,6 +23,7 @@
 #include "calib/triangulation_uncertainty.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/relative_difference.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -65,10 +66,6 @@ RigEstimate calibrated(const Rig& rig) {
   estimate.calibration = CalibrationSummary{
       .pixel_sigma_px = 0.2, .rms_px = 0.21, .chi2 = 1234, .dof = 1200, .views = 30};
   return estimate;
-}
-
-double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
 const std::vector<std::vector<int>> parts{{0, 1}, {0, 3}, {1, 0},    {1, 2},      {3, 1},
@@ -158,7 +155,7 @@ TEST(RigPart, StatesOfAPointWhatTheWholeRigStates) {
     const Eigen::Matrix2d stated =
         ProjectionUncertainty(pair.rig, own, 1, PointFixedTo::first_camera)
             .covariance_of_point(T_b_a(rig) * x);
-    EXPECT_LT(relative_difference(stated, projected * C * projected.transpose()), 1e-6);
+    EXPECT_LT(test::relative_difference(stated, projected * C * projected.transpose()), 1e-6);
 
     const PixelPair pixels{project(rig.cameras[a], x), project(rig.cameras[b], T_b_a(rig) * x)};
     const Eigen::MatrixXd point = derivative([&](const Rig& r) {
@@ -166,7 +163,8 @@ TEST(RigPart, StatesOfAPointWhatTheWholeRigStates) {
     });
     const auto triangulated = TriangulationUncertainty(pair.rig, own).at(pixels, 0.1);
     ASSERT_TRUE(triangulated);
-    EXPECT_LT(relative_difference(triangulated->calibration, point * C * point.transpose()), 1e-6);
+    EXPECT_LT(test::relative_difference(triangulated->calibration, point * C * point.transpose()),
+              1e-6);
   }
 }
 
@@ -189,8 +187,8 @@ TEST(RigPart, KeepsTheSummaryButForWhatThePartHasNot) {
   EXPECT_FALSE(other.evidence);
   EXPECT_TRUE(part_of(whole, {0, 1, 2, 3}).evidence) << "nothing changes if all are kept";
   const RigEstimate read = parse_rig(format_rig(other), "pair.json").estimate;
-  EXPECT_LT(relative_difference(read.covariance->matrix(Eigen::seq(0, 4), Eigen::seq(0, 4)),
-                                other.covariance->matrix(Eigen::seq(0, 4), Eigen::seq(0, 4))),
+  EXPECT_LT(test::relative_difference(read.covariance->matrix(Eigen::seq(0, 4), Eigen::seq(0, 4)),
+                                      other.covariance->matrix(Eigen::seq(0, 4), Eigen::seq(0, 4))),
             1e-9);
 }
 

@@ -15,6 +15,7 @@
 #include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
+#include "tests/support/texts.h"
 
 namespace vernier {
 
@@ -32,12 +33,6 @@ struct Change {
 };
 
 /// The text with its first `from` replaced.
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
 template <typename Read>
 void expect_complaints(const std::string& name,
                        const std::string& good,
@@ -46,7 +41,7 @@ void expect_complaints(const std::string& name,
   Folder folder;
   EXPECT_EQ(error_message([&] { read(folder.write(name, good)); }), "");
   for (const Change& change : changes) {
-    const std::string text = replaced(good, change.from, change.to);
+    const std::string text = test::replaced(good, change.from, change.to);
     const std::string said = error_message([&] { read(folder.write(name, text)); });
     EXPECT_NE(said.find(change.error_output), std::string::npos)
         << change.to << "\n  said " << said;
@@ -182,10 +177,10 @@ TEST(ConvertBadFiles, OpenCvSizesAndFisheyeMayBeSaidBesides) {
   const Rig rig = rig_of_cameras(Fisheye4{}, 2);
   std::string text = opencv_calibration(rig)[0].text;
   for (const char* i : {"1", "2"}) {
-    text = replaced(text, std::string("image_width_") + i, std::string("w") + i);
-    text =
-        replaced(text, std::string("distortion_model_") + i + ": fisheye", std::string("x: ") + i);
-    text = replaced(text, std::string("x: ") + i, std::string("x") + i + ": 0");
+    text = test::replaced(text, std::string("image_width_") + i, std::string("w") + i);
+    text = test::replaced(text, std::string("distortion_model_") + i + ": fisheye",
+                          std::string("x: ") + i);
+    text = test::replaced(text, std::string("x: ") + i, std::string("x") + i + ": 0");
   }
   const auto file = folder.write("stereo.yml", text);
   const ImportedRig read =
@@ -297,8 +292,8 @@ TEST(ConvertBadFiles, KalibrChainsAndNames) {
   Folder folder;
   const Rig rig = rig_of_cameras(OpenCv4{}, 3);
   std::string text = kalibr_camchain(rig)[0].text;
-  text = replaced(text, "/left/image_raw", "/davis/left/image_raw");
-  text = replaced(text, "  T_cn_cnm1", "  timeshift_cam_imu: 0.01\n  T_cn_cnm1");
+  text = test::replaced(text, "/left/image_raw", "/davis/left/image_raw");
+  text = test::replaced(text, "  T_cn_cnm1", "  timeshift_cam_imu: 0.01\n  T_cn_cnm1");
   const ImportedRig read = read_kalibr_camchain(folder.write("c.yaml", text));
   EXPECT_EQ(read.rig.cameras[0].name, "left");
   EXPECT_EQ(read.rig.cameras[2].name, "camera2");
@@ -306,7 +301,7 @@ TEST(ConvertBadFiles, KalibrChainsAndNames) {
   EXPECT_NE(read.notes[0].find("cam1.timeshift_cam_imu is ignored"), std::string::npos);
   // The third camera's pose is the product of two links.
   EXPECT_LT((read.rig.T_camera_first[2].t - rig.T_camera_first[2].t).norm(), 1e-15);
-  text = replaced(text, "/camera2/image_raw", "/right/image_raw");
+  text = test::replaced(text, "/camera2/image_raw", "/right/image_raw");
   EXPECT_EQ(read_kalibr_camchain(folder.write("c.yaml", text)).rig.cameras[2].name, "cam2");
 }
 
@@ -380,11 +375,11 @@ TEST(ConvertBadFiles, Colmap) {
   folder.write("images.txt", files[1].text + files[1].text);
   EXPECT_NE(error_message([&] { read(cameras); }).find("images.txt: holds 4 images of 2 cameras"),
             std::string::npos);
-  folder.write("rig_config.json", replaced(files[3].text, "\"image_prefix\"", "\"prefix\""));
+  folder.write("rig_config.json", test::replaced(files[3].text, "\"image_prefix\"", "\"prefix\""));
   EXPECT_NE(error_message([&] { read(cameras); }).find("has no \"image_prefix\""),
             std::string::npos);
-  folder.write("rig_config.json", replaced(files[3].text, "cam_from_rig_rotation\": [",
-                                           "cam_from_rig_rotation\": [2, "));
+  folder.write("rig_config.json", test::replaced(files[3].text, "cam_from_rig_rotation\": [",
+                                                 "cam_from_rig_rotation\": [2, "));
   EXPECT_NE(error_message([&] { read(cameras); }).find("is not a quaternion of 4"),
             std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 1 0.5 0 0 0 1 2 3\n");

@@ -16,6 +16,7 @@
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 #include "tests/support/scenes.h"
+#include "tests/support/texts.h"
 
 namespace vernier {
 namespace {
@@ -28,12 +29,6 @@ const RigEstimate& estimate() {
 
 std::string complaint_of(const std::string& text) {
   return test::error_message([&] { parse_rig(text, "rig.json"); });
-}
-
-std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
 }
 
 TEST(RigFile, RoundTrip) {
@@ -72,23 +67,23 @@ TEST(RigFile, KeepsRandomEffects) {
   EXPECT_EQ(after.motion_m, 3e-4);
   EXPECT_EQ(after.motion_baseline_m, 7e-4);
   const RigFile older =
-      parse_rig(with_replaced(text, "\"motion_baseline_m\":0.0007,", ""), "rig.json");
+      parse_rig(test::replaced(text, "\"motion_baseline_m\":0.0007,", ""), "rig.json");
   EXPECT_EQ(older.estimate.calibration->effects->motion_baseline_m, 0);  // isotropic
   EXPECT_EQ(after.shape_plane_m, 5e-5);
   EXPECT_EQ(after.shape_height_m, 2e-4);
   EXPECT_TRUE(after.shape_m == e.calibration->effects->shape_m);
-  EXPECT_EQ(complaint_of(with_replaced(text, "\"motion_m\":", "\"motion\":")),
+  EXPECT_EQ(complaint_of(test::replaced(text, "\"motion_m\":", "\"motion\":")),
             "rig.json: calibration.effects: has no \"motion_m\"; add it");
   e.calibration->effects->field_px = -1;
   EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
             "rig.json: calibration.effects.field_px: is negative; calibrate again");
-  EXPECT_EQ(complaint_of(with_replaced(text, "\"shape_m\":[", "\"shape_m\":[1,")),
+  EXPECT_EQ(complaint_of(test::replaced(text, "\"shape_m\":[", "\"shape_m\":[1,")),
             "rig.json: calibration.effects.shape_m: is not x, y, z of each point; calibrate again");
 }
 
 TEST(RigFile, UnknownKeysAreKeptWithAWarning) {
-  const std::string text = with_replaced(format_rig(estimate(), KeepEvidence::no), "\"version\":1",
-                                         "\"version\":1,\"serial\":\"A-17\"");
+  const std::string text = test::replaced(format_rig(estimate(), KeepEvidence::no), "\"version\":1",
+                                          "\"version\":1,\"serial\":\"A-17\"");
   const RigFile file = parse_rig(text, "rig.json");
   ASSERT_EQ(file.warnings.size(), 1u);
   EXPECT_NE(format_rig(file.estimate).find("\"serial\":\"A-17\""), std::string::npos);
@@ -102,20 +97,20 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
   EXPECT_NE(complaint_of(" \n").find("rig.json: is empty"), std::string::npos);
   EXPECT_NE(complaint_of("cam0: 1").find("rig.json: is not a rig file; vernier convert reads"),
             std::string::npos);
-  EXPECT_NE(
-      complaint_of(with_replaced(text, "\"k1\"", "\"k7\"")).find("rig.json: cameras[0].parameters"),
-      std::string::npos);
-  EXPECT_NE(complaint_of(with_replaced(text, "radial1", "radial9")).find("unknown model"),
+  EXPECT_NE(complaint_of(test::replaced(text, "\"k1\"", "\"k7\""))
+                .find("rig.json: cameras[0].parameters"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(test::replaced(text, "radial1", "radial9")).find("unknown model"),
             std::string::npos);
   EXPECT_NE(
-      complaint_of(with_replaced(text, "\"model\"", "\"lens\"")).find("rig.json: cameras[0]: "),
+      complaint_of(test::replaced(text, "\"model\"", "\"lens\"")).find("rig.json: cameras[0]: "),
       std::string::npos);
-  EXPECT_NE(complaint_of(with_replaced(text, "\"ay\":1", "\"ay\":2")).find("null direction"),
+  EXPECT_NE(complaint_of(test::replaced(text, "\"ay\":1", "\"ay\":2")).find("null direction"),
             std::string::npos);
-  EXPECT_NE(complaint_of(with_replaced(text, "\"parameters\":[", "\"parameters\":[7,"))
+  EXPECT_NE(complaint_of(test::replaced(text, "\"parameters\":[", "\"parameters\":[7,"))
                 .find("rig.json: parameters: 17 values for 16 names"),
             std::string::npos);
-  EXPECT_NE(complaint_of(with_replaced(text, "\"kind\":\"jackknife\"", "\"kind\":\"best\""))
+  EXPECT_NE(complaint_of(test::replaced(text, "\"kind\":\"jackknife\"", "\"kind\":\"best\""))
                 .find("covariance kind \"best\""),
             std::string::npos);
 }
@@ -131,7 +126,7 @@ TEST(RigFile, WhatNoRigHasIsRefusedWithItsKey) {
         {"\"f_px\":", "\"f_px\":1", "rig.json: parameters: left.f_px is"},
         {"\"name\":\"left\"", "\"name\":\"le\\u001bft\"",
          "rig.json: cameras[0].name: \"le\\x1bft\" is not a camera's name"}}) {
-    const std::string complaint = complaint_of(with_replaced(text, from, to));
+    const std::string complaint = complaint_of(test::replaced(text, from, to));
     EXPECT_NE(complaint.find(said), std::string::npos) << complaint;
     EXPECT_EQ(complaint.rfind("rig.json", 0), 0U) << complaint;
   }
@@ -167,10 +162,10 @@ TEST(RigFile, ParametersAreCheckedWithoutACovariance) {
   e.covariance_mvb.reset();
   const std::string text = format_rig(e, KeepEvidence::no);
   EXPECT_EQ(complaint_of(text), "");
-  EXPECT_NE(complaint_of(with_replaced(text, "\"parameters\":[", "\"parameters\":[9"))
+  EXPECT_NE(complaint_of(test::replaced(text, "\"parameters\":[", "\"parameters\":[9"))
                 .find("rig.json: parameters: left.f_px is"),
             std::string::npos);
-  EXPECT_NE(complaint_of(with_replaced(text, "[\"left.f_px\"", "[\"left.f\""))
+  EXPECT_NE(complaint_of(test::replaced(text, "[\"left.f_px\"", "[\"left.f\""))
                 .find("rig.json: parameter_names: are not the rig's parameters"),
             std::string::npos);
 }
@@ -242,10 +237,10 @@ TEST(RigFile, ASummaryThatNoCalibrationHasIsRefused) {
             }),
             "rig.json: calibration.outliers[0].pixel_px: holds a number beyond 1e+06; correct it");
   const std::string text = format_rig(estimate(), KeepEvidence::no);
-  EXPECT_EQ(complaint_of(with_replaced(text, "\"views\":", "\"prior_chi2\":1,\"views\":")),
+  EXPECT_EQ(complaint_of(test::replaced(text, "\"views\":", "\"prior_chi2\":1,\"views\":")),
             "rig.json: calibration: has no \"prior_dof\"; add it");
   EXPECT_EQ(complaint_of(
-                with_replaced(text, "\"views\":", "\"prior_chi2\":1,\"prior_dof\":0,\"views\":")),
+                test::replaced(text, "\"views\":", "\"prior_chi2\":1,\"prior_dof\":0,\"views\":")),
             "rig.json: calibration.prior_chi2: is above 0 for no parameter; calibrate again");
 }
 
@@ -322,7 +317,7 @@ TEST(RigFile, NumbersThatAreNotFiniteAreNotWritten) {
 TEST(RigFile, AnErrorOfWhatItNamesKeepsItsParts) {
   const test::Folder folder;
   const auto file = folder.write(
-      "rig.json", with_replaced(format_rig(estimate(), KeepEvidence::no), "radial1", "radial9"));
+      "rig.json", test::replaced(format_rig(estimate(), KeepEvidence::no), "radial1", "radial9"));
   const auto [place, fault, remedy] = test::error_parts([&] { read_rig(file); });
   EXPECT_EQ(place, file.string() + ": cameras[0].model");
   EXPECT_EQ(fault, "camera model \"radial9\": unknown model");

@@ -16,6 +16,7 @@
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 #include "tests/support/data_folder.h"
+#include "tests/support/relative_difference.h"
 
 namespace vernier {
 namespace {
@@ -33,10 +34,6 @@ Eigen::MatrixXd matrix(const nlohmann::json& json) {
 
 Eigen::Vector2d pixel(const nlohmann::json& json) {
   return {json[0].get<double>(), json[1].get<double>()};
-}
-
-double largest_relative_difference(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& theirs) {
-  return (ours - theirs).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff();
 }
 
 std::string number_text(double number) {
@@ -80,7 +77,7 @@ TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
       for (std::size_t column = 0; column < grid["q"][row].size(); ++column) {
         const auto C = ours.covariance(pixel(grid["q"][row][column]), distance_m);
         ASSERT_TRUE(C);
-        worst = std::max(worst, largest_relative_difference(*C, matrix(grid["cov"][row][column])));
+        worst = std::max(worst, test::relative_difference(*C, matrix(grid["cov"][row][column])));
         ++compared;
       }
     }
@@ -110,7 +107,7 @@ TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
       worst_point = std::max(worst_point, (point->x_m - x_theirs).norm() / x_theirs.norm());
       worst_observation = std::max(
           worst_observation,
-          largest_relative_difference(point->observation, matrix(theirs["Var_observation"][i])));
+          test::relative_difference(point->observation, matrix(theirs["Var_observation"][i])));
       for (std::size_t j = 0; j < pixels.size(); ++j) {
         Eigen::Matrix3d between;
         for (int a = 0; a < 3; ++a) {
@@ -118,11 +115,10 @@ TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
             between(a, b) = theirs["Var_calibration"][i][a][j][b].get<double>();
           }
         }
-        worst_calibration =
-            std::max(worst_calibration,
-                     largest_relative_difference(*ours.between(pair(i), pair(j)), between));
+        worst_calibration = std::max(
+            worst_calibration, test::relative_difference(*ours.between(pair(i), pair(j)), between));
         if (i == j) {
-          EXPECT_LT(largest_relative_difference(point->calibration, between), 1e-6);
+          EXPECT_LT(test::relative_difference(point->calibration, between), 1e-6);
         }
       }
     }

@@ -29,9 +29,9 @@ constexpr double psi_c = 0.02;  // where everything is linear: what parts there 
 constexpr double alarm = 1e-3;  // of each test, over all its comparisons together (Bonferroni)
 
 const RigEstimate& propagated_estimate() {
-  static const RigEstimate propagated_estimate = calibrate(
+  static const RigEstimate estimate = calibrate(
       simulate_board(test::stereo_rig(), {9, 6, 0.04}, {.seed = 7, .frames = 12}).observations);
-  return propagated_estimate;
+  return estimate;
 }
 
 /// Whether variances sampled at psi_c are those of the linear covariance: n − 1 of them over the

@@ -35,6 +35,7 @@
 #include "calib/uncertainty/pose_covariance.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/relative_difference.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -60,18 +61,14 @@ std::string error_output(Call call) {
   return "none";
 }
 
-double relative_change(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
 /// A calibration from ten noisy views with the noise known to be white.
 const RigEstimate& nominal_estimate() {
-  static const RigEstimate nominal_estimate = [] {
+  static const RigEstimate estimate = [] {
     const SimulatedBoard board = simulate_board(test::stereo_rig(), {6, 5, 0.05},
                                                 {.seed = 7, .frames = 10, .pixel_sigma_px = 0.2});
     return calibrate(board.observations, {.pixel_sigma_px = 0.2, .white_noise = true});
   }();
-  return nominal_estimate;
+  return estimate;
 }
 
 // The whole chain against brute force: every pixel of a noise-free calibration is moved by ±h, all
@@ -164,14 +161,14 @@ void BruteForce::compare() {
   for (int c = 0; c < 2; ++c) {
     const ProjectionUncertainty ours(joint, c, PointFixedTo::boards);
     const Pose& T = truth_.rig.T_camera_first[c];
-    EXPECT_LT(relative_change(ours.covariance_of_point(T * x), C[c][0]), 1e-5);
-    EXPECT_LT(relative_change(ours.covariance_of_direction(T.R * x), C[c][1]), 1e-5);
+    EXPECT_LT(test::relative_difference(ours.covariance_of_point(T * x), C[c][0]), 1e-5);
+    EXPECT_LT(test::relative_difference(ours.covariance_of_direction(T.R * x), C[c][1]), 1e-5);
   }
   const auto told = [&](TriangulationFrame frame) {
     return TriangulationUncertainty(joint, frame).at(pair, 0)->calibration;
   };
-  EXPECT_LT(relative_change(told(TriangulationFrame::rig), in_rig), 1e-5);
-  EXPECT_LT(relative_change(told(TriangulationFrame::stabilised), stabilised), 1e-5);
+  EXPECT_LT(test::relative_difference(told(TriangulationFrame::rig), in_rig), 1e-5);
+  EXPECT_LT(test::relative_difference(told(TriangulationFrame::stabilised), stabilised), 1e-5);
 }
 
 TEST_F(BruteForce, ProjectionAndTriangulationRespondAsPropagated) {
@@ -263,8 +260,8 @@ TEST(JointInformation, MeanMotionIsTheMeanOfThePoses) {
     M.block<3, 3>(n + 3, n + 6 * f + 3).setIdentity();
   }
   M.bottomRows(6) /= frames;
-  EXPECT_LT(relative_change(rig_and_motion_covariance(joint),
-                            M * rig_and_poses_covariance(joint) * M.transpose()),
+  EXPECT_LT(test::relative_difference(rig_and_motion_covariance(joint),
+                                      M * rig_and_poses_covariance(joint) * M.transpose()),
             1e-10);
 }
 
@@ -279,8 +276,9 @@ TEST(ProjectionUncertainty, DoesNotDependOnWhichCameraIsTheFirst) {
     const ProjectionUncertainty b(joint_swapped, 1 - c, PointFixedTo::boards);
     for (const double distance_m : {0.7, 5.0, far_away_m}) {
       for (const auto& q : pixels) {
-        EXPECT_LT(relative_change(*a.covariance(q, distance_m), *b.covariance(q, distance_m)),
-                  1e-5);
+        EXPECT_LT(
+            test::relative_difference(*a.covariance(q, distance_m), *b.covariance(q, distance_m)),
+            1e-5);
       }
     }
   }
@@ -292,13 +290,15 @@ TEST(ProjectionUncertainty, FarPointsApproachInfinityAndACameraFixedRayHasNoDist
     for (const auto fixed_to : {PointFixedTo::boards, PointFixedTo::first_camera}) {
       const ProjectionUncertainty u(joint, c, fixed_to);
       for (const auto& q : pixels) {
-        EXPECT_LT(relative_change(*u.covariance(q, 1e7), *u.covariance(q, far_away_m)), 1e-5);
+        EXPECT_LT(test::relative_difference(*u.covariance(q, 1e7), *u.covariance(q, far_away_m)),
+                  1e-5);
       }
     }
     const ProjectionUncertainty camera(joint, c, PointFixedTo::camera);
     for (const auto& q : pixels) {
-      EXPECT_LT(relative_change(*camera.covariance(q, 0.3), *camera.covariance(q, far_away_m)),
-                1e-12);
+      EXPECT_LT(
+          test::relative_difference(*camera.covariance(q, 0.3), *camera.covariance(q, far_away_m)),
+          1e-12);
     }
   }
 }
@@ -316,9 +316,9 @@ TEST(ProjectionUncertainty, AnHonestCovarianceThatIsAMultipleOfTheBoundScalesEve
   scaled.covariance->matrix = 4 * *scaled.covariance_mvb;
   const RigAndBoards honest = rig_and_boards(scaled, CovarianceChoice::honest);
   const RigAndBoards bound = rig_and_boards(scaled, CovarianceChoice::mvb);
-  EXPECT_LT(
-      relative_change(rig_and_motion_covariance(honest), 4 * rig_and_motion_covariance(bound)),
-      1e-9);
+  EXPECT_LT(test::relative_difference(rig_and_motion_covariance(honest),
+                                      4 * rig_and_motion_covariance(bound)),
+            1e-9);
 }
 
 // What a prior knows is no part of what the views' scatter inflates: with S the views' information
@@ -442,14 +442,14 @@ TEST(Triangulation, DerivativesAreThoseOfDifferences) {
       const auto by_rig = test::numeric_jacobian(
           [&](const Eigen::VectorXd& d) { return *triangulate_point(retract(rig, d), pair); },
           Eigen::VectorXd::Zero(parameter_count(rig)), 1e-5);
-      EXPECT_LT(relative_change(p.by_rig, by_rig), 1e-7) << model;
+      EXPECT_LT(test::relative_difference(p.by_rig, by_rig), 1e-7) << model;
       const auto by_pixels = test::numeric_jacobian(
           [&](const Eigen::VectorXd& d) {
             return *triangulate_point(rig,
                                       {pair.first_px + d.head<2>(), pair.other_px + d.tail<2>()});
           },
           Eigen::VectorXd::Zero(4), 1e-3);
-      EXPECT_LT(relative_change(p.by_pixels, by_pixels), 1e-7) << model;
+      EXPECT_LT(test::relative_difference(p.by_pixels, by_pixels), 1e-7) << model;
     }
   }
 }
@@ -489,7 +489,7 @@ TEST(TriangulationUncertainty, ALengthIsBetterKnownThanItsEnds) {
   const Eigen::Matrix3d at_a = u.at(a, 0.2)->calibration, at_b = u.at(b, 0.2)->calibration;
   const Eigen::Matrix3d difference = at_a + at_b - between - between.transpose();
   EXPECT_LT(difference(0, 0), 0.1 * at_a(0, 0));
-  EXPECT_LT(relative_change(*u.between(a, a), at_a), 1e-9);
+  EXPECT_LT(test::relative_difference(*u.between(a, a), at_a), 1e-9);
 }
 
 TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
@@ -514,7 +514,7 @@ TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
   const PixelPair q = *pixel_pair(three, {0.1, 0.1, 2}, 2);
   const auto from_all = TriangulationUncertainty(three, all.covariance->matrix, 2).at(q, 0.1);
   const auto from_pair = TriangulationUncertainty(pair.rig, pair.covariance->matrix).at(q, 0.1);
-  EXPECT_LT(relative_change(from_all->calibration, from_pair->calibration), 1e-12);
+  EXPECT_LT(test::relative_difference(from_all->calibration, from_pair->calibration), 1e-12);
   EXPECT_PRED2(has_part, error_output([&] { pair_of(all, 3); }), "no camera 3");
 }
 

@@ -21,9 +21,9 @@ using namespace vernier::internal;
 namespace {
 
 RigEstimate sampled_estimate() {
-  static const RigEstimate sampled_estimate =
+  static const RigEstimate estimate =
       calibrate(simulate_board(test::stereo_rig(), {}, {.seed = 3}).observations);
-  return sampled_estimate;
+  return estimate;
 }
 
 // Seed 11 fixed. With W the whitened sample scatter of n = 10,000 draws in p = 16 dimensions,

@@ -23,7 +23,7 @@ using namespace vernier::stereo;
 namespace {
 
 constexpr int side = 56, within = 20;  // edges are judged away from the image's border
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 test::Step step_at(int angle_deg, int phase, int phases, double blur_px) {
   test::Step step;

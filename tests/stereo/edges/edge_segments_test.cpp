@@ -25,7 +25,7 @@ using namespace vernier::stereo::internal;
 namespace {
 
 constexpr int segments_side = 160;
-constexpr double half_turn = std::numbers::pi;
+using std::numbers::pi;
 
 /// Bright on dark, or dark on bright.
 GreyLevels image_of(const test::ConvexPolygon& polygon, bool bright) {
@@ -277,8 +277,7 @@ TEST(EdgeSegments, EndShortOfAJunctionWithinWhatTheyState) {
   double z2 = 0;
   for (unsigned trial = 0; trial < 40; ++trial) {
     RandomStream draws({54, trial});
-    const double turn = draws.uniform(0, 2 * half_turn),
-                 opening = draws.uniform(60, 90) * half_turn / 180;
+    const double turn = draws.uniform(0, 2 * pi), opening = draws.uniform(60, 90) * pi / 180;
     const Eigen::Vector2d at(40 + draws.uniform(-0.5, 0.5), 40 + draws.uniform(-0.5, 0.5));
     const Eigen::Vector2d stem(std::cos(turn + opening), std::sin(turn + opening));
     const Eigen::Vector2d bar_normal(-std::sin(turn), std::cos(turn)), across(-stem.y(), stem.x());

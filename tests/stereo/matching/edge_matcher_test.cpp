@@ -21,6 +21,7 @@
 #include "stereo/matching/edge_support.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/error_message.h"
+#include "tests/support/grey_levels.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
@@ -40,10 +41,6 @@ GreyLevels random_image(int width, int height, std::uint64_t seed) {
   return image;
 }
 
-float clamped(const GreyLevels& image, int x, int y) {
-  return image(std::clamp(x, 0, image.width_px - 1), std::clamp(y, 0, image.height_px - 1));
-}
-
 TEST(Census, SaysWhichPixelsAreBrighter) {
   const GreyLevels image = random_image(300, 12, 201);
   const CensusImage census = census_transform(image, 8);
@@ -53,7 +50,7 @@ TEST(Census, SaysWhichPixelsAreBrighter) {
       for (int j = -3; j <= 3; ++j) {
         for (int i = -4; i <= 4; ++i) {
           if (i == 0 && j == 0) continue;
-          bits = (bits << 1) | (clamped(image, x + i, y + j) > image(x, y));
+          bits = (bits << 1) | (test::clamped(image, x + i, y + j) > image(x, y));
         }
       }
       ASSERT_EQ(census.row(y)[x], bits) << x << " " << y;

@@ -17,6 +17,7 @@
 #include "stereo/matching/stretch_filter.h"
 #include "stereo/matching/stretch_search.h"
 #include "tests/support/error_message.h"
+#include "tests/support/grey_levels.h"
 #include "tests/support/leaf_pair.h"
 #include "tests/support/plane_figures.h"
 
@@ -29,10 +30,6 @@ namespace {
 
 using test::leaf_pair;
 
-float clamped_value(const GreyLevels& image, int x, int y) {
-  return image(std::clamp(x, 0, image.width_px - 1), std::clamp(y, 0, image.height_px - 1));
-}
-
 /// The filtered value at a pixel, by its definition.
 double filtered_at(const GreyLevels& image, const StretchOptions& options, int x, int y) {
   if (options.filter == StretchFilter::grey) return std::round(2 * (image(x, y) - 127.5));
@@ -40,7 +37,7 @@ double filtered_at(const GreyLevels& image, const StretchOptions& options, int x
   const int reach = options.rank_reach_px;
   for (int j = -reach; j <= reach; ++j) {
     for (int i = -reach; i <= reach; ++i) {
-      const float off = clamped_value(image, x + i, y + j) - image(x, y);
+      const float off = test::clamped(image, x + i, y + j) - image(x, y);
       rank += off < -options.rank_least_grey ? 1 : off > options.rank_least_grey ? -1 : 0;
     }
   }
@@ -68,13 +65,13 @@ class Reference {
     double n = 0, l = 0, r = 0, ll = 0, rr = 0, lr = 0;
     for (int j = -options_.height_px / 2; j <= options_.height_px / 2; ++j) {
       for (int i = -options_.width_px / 2; i <= options_.width_px / 2; ++i) {
-        const double left = clamped_value(left_, block.x + i, block.y + j);
+        const double left = test::clamped(left_, block.x + i, block.y + j);
         const double off = std::round(16 * (stretch * i + shear * j)) / 16;
         const int before = static_cast<int>(std::floor(off));
         const double t = off - before;
         const int x = block.x - d + before;
-        const double right = (1 - t) * clamped_value(right_, x, block.y + j) +
-                             t * clamped_value(right_, x + 1, block.y + j);
+        const double right = (1 - t) * test::clamped(right_, x, block.y + j) +
+                             t * test::clamped(right_, x + 1, block.y + j);
         n += 1, l += left, r += right;
         ll += left * left, rr += right * right, lr += left * right;
       }
@@ -157,14 +154,14 @@ TEST(StretchFilters, CensusAndDerivativeByDefinition) {
       for (const int j : {-2, 0, 2}) {
         for (const int i : {-2, 0, 2}) {
           if (i == 0 && j == 0) continue;
-          const bool brighter = clamped_value(image, u + i, v + j) > image(u, v);
+          const bool brighter = test::clamped(image, u + i, v + j) > image(u, v);
           ASSERT_EQ(census.row(plane++, y)[x], brighter ? 1 : -1) << x << " " << y;
         }
       }
       double sum = 0, weights = 0;
       for (int i = -3; i <= 3; ++i) {
         const double g = std::exp(-0.5 * i * i);
-        sum += g * (clamped_value(image, u + i + 1, v) - clamped_value(image, u + i - 1, v));
+        sum += g * (test::clamped(image, u + i + 1, v) - test::clamped(image, u + i - 1, v));
         weights += g;
       }
       ASSERT_NEAR(derivative.row(0, y)[x], sum / weights, 0.501) << x << " " << y;

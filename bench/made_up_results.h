@@ -32,7 +32,7 @@ inline std::vector<sim::TrialResult> made_up_trials(int first, int count) {
     for (localise::Pose2D* pose : {&t.truth, &t.answer, &t.node}) {
       *pose = {10 * next(), 8 * next(), 3 * next()};
     }
-    t.error_m = t.node_error_m = 1.2 * next();
+    t.error = t.node_error_m = 1.2 * next();
     t.heading_error_rad = 0.1 * next();
     t.lines = 30 + i % 40;
     t.score = next();

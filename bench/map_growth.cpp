@@ -86,7 +86,7 @@ void measure(const std::string& label,
     const TrialResult result =
         experiment.run_trial(trial, experiment.estimator_rig(trial), map, *localiser);
     times.push_back(result.cpu_ms);
-    right += result.error_m <= success_radius_m;
+    right += result.error <= success_radius_m;
     answered += result.answered();
     answered_right += result.success();
   }

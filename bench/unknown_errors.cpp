@@ -80,7 +80,7 @@ struct Counts {
 
   void add(const TrialResult& result) {
     ++queries;
-    right += result.error_m <= success_radius_m;
+    right += result.error <= success_radius_m;
     answered += result.answered();
     answered_right += result.success();
   }

@@ -20,9 +20,18 @@
 #include "cli/program/session.h"
 #include "cli/program/streams.h"
 #include "cli/verbs.h"
+#include "sim/image_systems/matcher_system.h"
 #include "sim/mpi/mpi_launch.h"
+#include "sim/study/system_kind.h"
+#include "sim/systems/systems.h"
 
 namespace {
+
+/// What studies can try besides localisers.
+void register_all_systems() {
+  vernier::sim::internal::register_systems();
+  register_system(vernier::sim::internal::matcher_kind());
+}
 
 /// The message for arguments that belong to no option. An unquoted pattern is expanded by the
 /// shell.
@@ -101,6 +110,7 @@ int main(int argc, char** argv) {
   cli::watch_ending_signals(launch && launch->rank > 0);
   cli::watch_memory();
   silence_libraries();
+  register_all_systems();
   cli::Session session;
   session.command = cli::command_line(argc, argv);
   CLI::App app{

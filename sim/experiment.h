@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -103,19 +104,22 @@ struct ExperimentSettings {
   std::uint64_t seed = 1;
 };
 
-/// An answer is right within this distance on the floor.
+/// An answer of a localiser is right within this distance on the floor.
 inline constexpr double success_radius_m = 1;
 
-/// One localisation trial: true pose, answer and time.
+/// One trial of a system under test: a localiser here, and what else a study tries
+/// (docs/systems.md), which has an error in a unit of its own, `measured`, and nothing of what is
+/// said below of maps, nodes and looks.
 struct TrialResult {
   std::uint32_t trial = 0;
-  localise::Pose2D truth;
+  localise::Pose2D truth;  ///< pose of the query, or of the robot at its start
   localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
   localise::Pose2D answer;  ///< refined pose
   localise::Pose2D node;    ///< the map's node, or the answer of a localiser that names none
-  /// Distance between answer and truth on the floor; NaN without an answer. An unsure localiser's
-  /// best guess counts as an answer here, but not in answered().
-  double error_m = 0;
+  /// Of a localiser the distance between answer and truth on the floor, metres; NaN without an
+  /// answer. An unsure localiser's best guess counts as an answer here, but not in answered().
+  double error = 0;
+  double limit = success_radius_m;  ///< an answer is right if its error is at most this
   double node_error_m = 0;
   double heading_error_rad = 0;
   int lines = 0;              ///< in space, of the first look, as given to the localiser
@@ -125,10 +129,13 @@ struct TrialResult {
   double score = 0, runner_up = 0;
   double probability = 0;          ///< that the answer is right, as the localiser states it
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
-  std::string failure;  ///< why the localiser or a source failed; studies do not store it
+  /// What another system measures, in the order of its names; none of a localiser's.
+  std::optional<std::vector<double>> measured = {};
+  /// Why the system or a source failed, or doubts its answer; studies do not store a localiser's.
+  std::string failure;
 
   bool answered() const { return status == localise::LocalisationStatus::answered; }
-  bool success() const { return answered() && error_m <= success_radius_m; }
+  bool success() const { return answered() && error <= limit; }
 };
 
 /// Trials that share a recorded map: first, first + 1 …

@@ -32,6 +32,7 @@
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_run.h"
 #include "sim/study/study.h"
+#include "sim/study/system_kind.h"
 #include "sim/world.h"
 
 namespace vernier::cli {
@@ -138,10 +139,10 @@ void add_worlds(const Study& study, Json& part) {
 
 /// What the page says of one study.
 Json study_part(const LoadedStudy& loaded, const std::string& name) {
-  Json part{{"name", name},
-            {"study", report_study(loaded.study, loaded.results)},
-            {"world", report_world(loaded.study.world)},
-            {"view", report_view(loaded.study)}};
+  Json part{{"name", name}, {"study", report_study(loaded.study, loaded.results)}};
+  if (!loaded.study.file.cells[0].system.is_localiser()) return part;
+  part["world"] = report_world(loaded.study.world);
+  part["view"] = report_view(loaded.study);
   add_worlds(loaded.study, part);
   return part;
 }
@@ -243,10 +244,23 @@ std::vector<std::string> add_figures(const std::vector<LoadedStudy>& studies,
   return files;
 }
 
-std::string title_of(const ReportArguments& options, const Inputs& inputs) {
+std::string title_of(const std::vector<LoadedStudy>& studies) {
+  std::set<std::string> systems;
+  for (const LoadedStudy& loaded : studies) systems.insert(loaded.study.file.cells[0].system.name);
+  if (systems.size() > 1) return "Studies of several systems";
+  const bool several = studies.size() > 1;
+  if (*systems.begin() == "localiser") {
+    return several ? "Studies of localisation under calibration error"
+                   : "Localisation under calibration error";
+  }
+  return fmt::format("{} of {}", several ? "Studies" : "Study", system_kind(*systems.begin()).noun);
+}
+
+std::string title_of(const ReportArguments& options,
+                     const Inputs& inputs,
+                     const std::vector<LoadedStudy>& studies) {
   if (!options.title.empty()) return options.title;
-  if (inputs.studies.size() > 1) return "Studies of localisation under calibration error";
-  if (!inputs.studies.empty()) return "Localisation under calibration error";
+  if (!studies.empty()) return title_of(studies);
   if (!inputs.evaluation.empty()) return "Stereo matchers at edges";
   return inputs.rigs.size() > 1 ? "Calibrations and their uncertainty"
                                 : "Calibration and its uncertainty";
@@ -267,14 +281,14 @@ void run(const ReportArguments& options, Session& session) {
                 "give a folder written by vernier study -o");
   }
   const Validation proof = options.no_proof ? Validation::skip : Validation::make;
-  Json data{{"title", title_of(options, inputs)}};
+  std::vector<LoadedStudy> studies;
+  for (const std::string& folder : inputs.studies) studies.push_back(load(folder, session));
+  Json data{{"title", title_of(options, inputs, studies)}};
   data["program"] = {{"version", VERNIER_VERSION},
                      {"instruction_set", instruction_set()},
                      {"machine", program_and_machine()},
                      {"command", session.command}};
   data["rigs"] = Json::array();
-  std::vector<LoadedStudy> studies;
-  for (const std::string& folder : inputs.studies) studies.push_back(load(folder, session));
   add_studies(studies, session, proof, data);
   if (!inputs.evaluation.empty()) data["evaluation"] = report_evaluation(inputs.evaluation);
   for (const NamedRig& rig : rigs) {

@@ -25,6 +25,7 @@
 #include "sim/sense.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -43,7 +44,7 @@ constexpr std::size_t most_listed = 20'000;
 Json trial_json(const TrialResult& t) {
   Json row{t.trial, t.truth.x_m, t.truth.y_m, t.truth.heading_rad};
   if (t.answered()) {
-    row.insert(row.end(), {t.answer.x_m, t.answer.y_m, t.answer.heading_rad, t.error_m});
+    row.insert(row.end(), {t.answer.x_m, t.answer.y_m, t.answer.heading_rad, t.error});
   } else {
     row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr});
   }
@@ -70,24 +71,30 @@ std::size_t listed_of_a_cell(const Study& study) {
 
 Json report_study(const Study& study, const StudyResults& results) {
   const StudyCell& first = study.file.cells[0];
+  const bool localises = first.system.is_localiser();
   Json json{{"file", "study.toml"},
             {"trials", study.file.trials},
             {"seed", first.experiment.seed},
-            {"protocol", name(first.experiment.protocol)},
-            {"method", first.experiment.method},
-            {"world_ceiling",
-             results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr)},
             {"commands", results.commands},
             {"machines", results.machines},
             {"sweep", nullptr},
             {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
+  if (localises) {
+    json["protocol"] = name(first.experiment.protocol);
+    json["method"] = first.experiment.method;
+    json["world_ceiling"] =
+        results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr);
+  } else {
+    json["system"] = system_json(system_of(study.file));
+  }
   for (std::size_t i = 0; i < results.cells.size(); ++i) {
     Json cell = cell_json(results.cells[i]);
     cell["trial_list"] = Json::array();
-    for (const TrialResult& t : results.cells[i].trials)
-      cell["trial_list"].push_back(trial_json(t));
+    for (const TrialResult& t : results.cells[i].trials) {
+      if (localises) cell["trial_list"].push_back(trial_json(t));
+    }
     json["cells"].push_back(std::move(cell));
   }
   if (study.file.sweep_keys.size() == 1) {

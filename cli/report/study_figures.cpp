@@ -21,6 +21,7 @@
 #include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::cli {
 namespace {
@@ -239,6 +240,11 @@ class FigureMaker {
   std::vector<CellSummary> summaries_;
 };
 
+std::string error_title(const StudyCell& cell) {
+  const SystemKind& kind = system_kind(cell.system.name);
+  return "median " + kind.error_title + (kind.unit.empty() ? "" : ", " + kind.unit);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, PaperFigure>> study_figures(const StudyResults& results) {
@@ -251,8 +257,8 @@ std::vector<std::pair<std::string, PaperFigure>> study_figures(const StudyResult
          return FigurePoint{0, 100 * s.success, i ? 100 * i->low : no_figure,
                             i ? 100 * i->high : no_figure};
        }},
-      {"median_error", "median error, m", [](const CellSummary& s) {
-         return FigurePoint{0, s.median_error_m, no_figure, no_figure};
+      {"median_error", error_title(results.cells[0].cell), [](const CellSummary& s) {
+         return FigurePoint{0, s.median_error, no_figure, no_figure};
        }}};
   std::vector<std::pair<std::string, PaperFigure>> figures;
   for (const CellQuantity& quantity : quantities) {

@@ -29,6 +29,7 @@
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::cli {
 namespace {
@@ -119,9 +120,39 @@ void add_interval(Row& row, const std::string& name, const std::optional<Interva
   row.real(name + "_high", interval ? interval->high : no_number);
 }
 
+/// Of another system than a localiser.
+void add_system_figures(Row& row, const CellResult& cell) {
+  const CellSummary& s = cell.summary;
+  const SystemSettings& system = cell.cell.system;
+  const double of = s.trials > 0 ? 1 : no_number;
+  row.whole("trials", s.trials);
+  row.whole("blocks", s.maps);
+  row.real("success", of * s.success);
+  add_interval(row, "success", s.success_interval_95);
+  add_interval(row, "success_binomial",
+               s.trials > 0 ? std::optional(s.success_interval_binomial_95) : std::nullopt);
+  row.real("coverage", of * s.coverage);
+  row.real("success_when_answered", of * s.success_when_answered);
+  row.whole("failed", s.failed);
+  const std::string& error = system_kind(system.name).error_name;
+  row.real("median_" + error, s.median_error);
+  row.real("p95_" + error, s.p95_error);
+  for (std::size_t i = 0; i < system.measured.size(); ++i) {
+    const MeasuredSummary m = i < s.measured.size() ? s.measured[i] : MeasuredSummary{};
+    row.real("mean_" + system.measured[i], m.mean);
+    row.real("rms_" + system.measured[i], m.rms);
+    row.real("median_" + system.measured[i], m.median);
+  }
+  row.real("cpu_ms_mean", of * s.cpu_ms_mean);
+  row.real("cpu_ms_median", s.cpu_ms_median);
+  row.real("cpu_ms_p95", s.cpu_ms_p95);
+  row.real("wall_ms_mean", of * s.wall_ms_mean);
+}
+
 void add_figures(Row& row, const CellResult& cell) {
   const CellSummary& s = cell.summary;
   const double of = s.trials > 0 ? 1 : no_number;  // a cell without trials has no rates and times
+  if (!cell.cell.system.is_localiser()) return add_system_figures(row, cell);
   row.whole("trials", s.trials);
   row.whole("maps", s.maps);
   row.real("success", of * s.success);
@@ -135,7 +166,7 @@ void add_figures(Row& row, const CellResult& cell) {
   row.real("node_success", of * s.node_success);
   row.real("recall_0_5m_5deg", of * s.recall_05);
   row.real("recall_0_25m_2deg", of * s.recall_025);
-  row.real("median_error_m", s.median_error_m);
+  row.real("median_error_m", s.median_error);
   row.real("median_heading_error_deg", s.median_heading_error_rad * 180 / std::numbers::pi);
   row.real("cpu_ms_mean", of * s.cpu_ms_mean);
   row.real("cpu_ms_median", s.cpu_ms_median);
@@ -156,7 +187,7 @@ void add_pose(Row& row, const std::string& name, const Pose2D& pose, bool is_kno
 
 void add_trial(Row& row, const TrialResult& t) {
   constexpr std::size_t longest_status = 15;
-  const bool has_answer = std::isfinite(t.error_m);
+  const bool has_answer = std::isfinite(t.error);
   row.whole("trial", t.trial);
   row.text("status", std::string(name(t.status)), longest_status);
   row.flag("answered", t.answered());
@@ -164,7 +195,7 @@ void add_trial(Row& row, const TrialResult& t) {
   add_pose(row, "true", t.truth, true);
   add_pose(row, "answer", t.answer, has_answer);
   add_pose(row, "node", t.node, has_answer);
-  row.real("error_m", t.error_m);
+  row.real("error_m", t.error);
   row.real("node_error_m", t.node_error_m);
   row.real("heading_error_rad", t.heading_error_rad);
   row.whole("lines", t.lines);
@@ -178,7 +209,23 @@ void add_trial(Row& row, const TrialResult& t) {
   row.real("wall_ms", t.wall_ms);
 }
 
-Row trial_row(const SettingColumns& settings,
+/// Of another system than a localiser.
+void add_system_trial(Row& row, const SystemSettings& system, const TrialResult& t) {
+  constexpr std::size_t longest_status = 15;
+  row.whole("trial", t.trial);
+  row.text("status", std::string(name(t.status)), longest_status);
+  row.flag("answered", t.answered());
+  row.flag("success", t.success());
+  row.real(system_kind(system.name).error_name, t.error);
+  for (std::size_t i = 0; i < system.measured.size(); ++i) {
+    row.real(system.measured[i], t.measured ? (*t.measured)[i] : no_number);
+  }
+  row.real("cpu_ms", t.cpu_ms);
+  row.real("wall_ms", t.wall_ms);
+}
+
+Row trial_row(const Study& study,
+              const SettingColumns& settings,
               std::size_t cell,
               int block,
               const TrialResult& trial) {
@@ -186,7 +233,12 @@ Row trial_row(const SettingColumns& settings,
   row.whole("cell", static_cast<std::int64_t>(cell) + 1);
   settings.add_to(row, cell);
   row.whole("block", block);
-  add_trial(row, trial);
+  const SystemSettings& system = study.file.cells[cell].system;
+  if (system.is_localiser()) {
+    add_trial(row, trial);
+  } else {
+    add_system_trial(row, system, trial);
+  }
   return row;
 }
 
@@ -225,13 +277,13 @@ StudyResults export_trials(const Study& study,
     });
   }
   const SettingColumns settings(study, false);
-  ColumnFile table(file, format, trial_row(settings, 0, 0, {}).columns, rows);
+  ColumnFile table(file, format, trial_row(study, settings, 0, 0, {}).columns, rows);
   std::size_t written = 0;
   StudyResults results =
       visit_results(study, folder, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
         for (const TrialResult& t : trials) {
           const int block = static_cast<int>(t.trial) / study.file.trials_per_block;
-          table.add(trial_row(settings, cell, block, t).values);
+          table.add(trial_row(study, settings, cell, block, t).values);
         }
         written += trials.size();
       });

@@ -54,6 +54,7 @@ void print(const Study& study, const fs::path& folder, Session& session) {
 
 /// Of each world and height of the camera.
 void tell_blocked_routes(const Study& study, Session& session) {
+  if (!system_of(study.file).uses_protocol) return;
   std::set<std::pair<std::string, double>> told;
   for (const StudyCell& cell : study.file.cells) {
     const double height_m = cell.experiment.mount.height_m;

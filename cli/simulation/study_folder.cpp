@@ -29,6 +29,7 @@
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
+#include "sim/study/system_kind.h"
 #include "sim/study/told_settings.h"
 #include "sim/study/world_summary.h"
 #include "sim/told/fresh_calibrations.h"
@@ -125,6 +126,13 @@ Json setting_json(const std::string& text) {
   return value ? Json(*value) : Json(text);
 }
 
+Json system_json(const SystemKind& kind) {
+  return {{"name", kind.name},
+          {"error", kind.error_name},
+          {"title", kind.error_title},
+          {"unit", kind.unit}};
+}
+
 std::vector<fs::path> study_folder_files(const fs::path& folder) {
   std::vector<fs::path> files = store_files(folder);
   for (fs::path& file : input_files(folder)) files.push_back(std::move(file));
@@ -149,6 +157,55 @@ std::string short_label(const StudyCell& cell) {
   return label;
 }
 
+namespace {
+
+/// What cells of localisers have and others have not.
+void add_localisation(const CellResult& cell, Json& json) {
+  const CellSummary& s = cell.summary;
+  const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
+  const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
+  json.update(
+      {{"maps", s.maps},
+       {"best_guess_success", of_trials(s.best_guess_success)},
+       {"node_success", of_trials(s.node_success)},
+       {"recall_0_5m_5deg", of_trials(s.recall_05)},
+       {"recall_0_25m_2deg", of_trials(s.recall_025)},
+       {"median_error_m", json_number(s.median_error)},
+       {"median_heading_error_deg",
+        json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
+       {"protocol", name(cell.cell.experiment.protocol)},
+       {"world_ceiling", cell.ceiling ? Json(cell.ceiling->success) : Json()},
+       {"world_ceiling_interval_95",
+        cell.ceiling ? pair(cell.ceiling->success_interval_95) : Json()},
+       {"world_ceiling_queries", cell.ceiling ? Json(cell.ceiling->queries) : Json()},
+       {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
+       {"unaliased_share_interval_95",
+        cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
+       {"reliability", reliability_json(cell.stated)},
+       {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.stated) : Json()}});
+}
+
+/// What cells of other systems have.
+void add_system(const CellResult& cell, Json& json) {
+  const CellSummary& s = cell.summary;
+  const SystemSettings& system = cell.cell.system;
+  json["blocks"] = s.maps;
+  json["success_error"] = system.success_error;
+  json["median_error"] = json_number(s.median_error);
+  json["p95_error"] = json_number(s.p95_error);
+  json["why_failed"] = s.why_failed.empty() ? Json() : Json(s.why_failed);
+  json["measured"] = Json::object();
+  for (std::size_t i = 0; i < s.measured.size(); ++i) {
+    const MeasuredSummary& m = s.measured[i];
+    json["measured"][system.measured[i]] = {{"trials", m.trials},
+                                            {"mean", json_number(m.mean)},
+                                            {"rms", json_number(m.rms)},
+                                            {"median", json_number(m.median)}};
+  }
+}
+
+}  // namespace
+
 Json cell_json(const CellResult& cell) {
   const CellSummary& s = cell.summary;
   Json settings;
@@ -160,43 +217,31 @@ Json cell_json(const CellResult& cell) {
   const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
   Json swept = Json::object();
   for (const auto& [key, value] : cell.cell.swept) swept[key] = setting_json(value);
-  return {{"label", short_label(cell.cell)},
-          {"settings", settings},
-          {"swept", swept},
-          {"trials", s.trials},
-          {"success", of_trials(s.success)},
-          {"maps", s.maps},
-          {"success_interval_95", clustered},
-          {"success_interval_95_missing", missing},
-          {"interval_width_wanted", cell.interval_width ? Json(*cell.interval_width) : Json()},
-          {"stopped", cell.interval_width ? Json(name(cell.budget.state)) : Json()},
-          {"success_interval_binomial_95",
-           s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
-          {"coverage", of_trials(s.coverage)},
-          {"success_when_answered", of_trials(s.success_when_answered)},
-          {"best_guess_success", of_trials(s.best_guess_success)},
-          {"failed", s.failed},
-          {"node_success", of_trials(s.node_success)},
-          {"recall_0_5m_5deg", of_trials(s.recall_05)},
-          {"recall_0_25m_2deg", of_trials(s.recall_025)},
-          {"median_error_m", json_number(s.median_error_m)},
-          {"median_heading_error_deg",
-           json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
-          {"cpu_ms_mean", of_trials(s.cpu_ms_mean)},
-          {"cpu_ms_median", json_number(s.cpu_ms_median)},
-          {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
-          {"wall_ms_mean", of_trials(s.wall_ms_mean)},
-          {"protocol", name(cell.cell.experiment.protocol)},
-          {"world_ceiling", cell.ceiling ? Json(cell.ceiling->success) : Json()},
-          {"world_ceiling_interval_95",
-           cell.ceiling ? pair(cell.ceiling->success_interval_95) : Json()},
-          {"world_ceiling_queries", cell.ceiling ? Json(cell.ceiling->queries) : Json()},
-          {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
-          {"unaliased_share_interval_95",
-           cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
-          {"reliability", reliability_json(cell.stated)},
-          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.stated) : Json()},
-          {"calibration", calibrations_json(cell.calibrations)}};
+  Json json{{"label", short_label(cell.cell)},
+            {"settings", settings},
+            {"swept", swept},
+            {"trials", s.trials},
+            {"success", of_trials(s.success)},
+            {"success_interval_95", clustered},
+            {"success_interval_95_missing", missing},
+            {"interval_width_wanted", cell.interval_width ? Json(*cell.interval_width) : Json()},
+            {"stopped", cell.interval_width ? Json(name(cell.budget.state)) : Json()},
+            {"success_interval_binomial_95",
+             s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
+            {"coverage", of_trials(s.coverage)},
+            {"success_when_answered", of_trials(s.success_when_answered)},
+            {"failed", s.failed},
+            {"cpu_ms_mean", of_trials(s.cpu_ms_mean)},
+            {"cpu_ms_median", json_number(s.cpu_ms_median)},
+            {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
+            {"wall_ms_mean", of_trials(s.wall_ms_mean)},
+            {"calibration", calibrations_json(cell.calibrations)}};
+  if (cell.cell.system.is_localiser()) {
+    add_localisation(cell, json);
+  } else {
+    add_system(cell, json);
+  }
+  return json;
 }
 
 Json comparisons_json(const StudyResults& results) {
@@ -220,6 +265,7 @@ Json comparisons_json(const StudyResults& results) {
 
 Json study_json(const Study& study, const StudyResults& results) {
   Json json{{"trials", study.file.trials},
+            {"system", system_json(system_of(study.file))},
             {"rig", rig_json(study)},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},

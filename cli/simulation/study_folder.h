@@ -9,11 +9,15 @@
 #include "cli/program/session.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::cli {
 
 /// Whether text is a whole number that a double does not hold, as a large seed.
 bool is_beyond_double(const std::string& text);
+
+/// What a study tries: its name, the column of its error, that in words, and its unit.
+Json system_json(const SystemKind& kind);
 
 /// A setting as a JSON number, Boolean or string.
 Json setting_json(const std::string& text);

@@ -189,7 +189,7 @@ Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
     if (input.role == InputRole::rig) rig = path;
     load(input, path, study, session);
   }
-  check_maps(study);
+  if (study.file.cells[0].system.is_localiser()) check_maps(study);
   check_covariances(study, rig);
   return study;
 }

@@ -16,6 +16,7 @@
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
+#include "sim/study/system_kind.h"
 #include "sim/told/fresh_calibrations.h"
 
 namespace vernier::cli {
@@ -62,11 +63,33 @@ void run_in_folder(const FolderClaim& claim,
   if (stop.came()) end();
 }
 
+namespace {
+
+/// Failed calibrations are results; of another system that fails nothing is to be trusted.
+void tell_failed_system(const CellResult& cell, Session& session) {
+  const CellSummary& s = cell.summary;
+  const std::string text =
+      fmt::format("{} failed in {} of {} trials of cell \"{}\"{}{}",
+                  system_kind(cell.cell.system.name).noun, s.failed, s.trials, cell.cell.label,
+                  s.why_failed.empty() ? "" : ", the first by: ", s.why_failed);
+  if (cell.cell.system.name == "calibration" && s.failed < s.trials) {
+    session.warn(text);
+  } else {
+    session.add_trust_warning(text);
+  }
+}
+
+}  // namespace
+
 void tell_failed_trials(const StudyResults& results, Session& session) {
   for (const CellResult& cell : results.cells) {
     const int failed = cell.summary.failed;
     if (failed == 0) continue;
     const SourceSettings& sources = cell.cell.experiment.sources;
+    if (!cell.cell.system.is_localiser()) {
+      tell_failed_system(cell, session);
+      continue;
+    }
     if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
       session.warn(
           fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "

@@ -20,6 +20,7 @@
 #include "calib/rig_estimate.h"
 #include "cli/program/text_table.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/system_table.h"
 #include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
@@ -27,6 +28,7 @@
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 #include "sim/study/told_settings.h"
 #include "sim/study/world_summary.h"
 #include "sim/told/fresh_calibrations.h"
@@ -115,11 +117,18 @@ std::string cells_table(const StudyResults& results, const CellFigures& figures)
   add("95 % interval", [](S s, double) { return interval_text(s.success_interval_95); });
   add("answered %", [](S s, double of) { return figure(of * 100 * s.coverage, 1); });
   add("of these %", [](S s, double of) { return figure(of * 100 * s.success_when_answered, 2); });
-  add("median m", [](S s, double) { return figure(s.median_error_m, 3); });
+  const SystemKind& kind = system_kind(results.cells[0].cell.system.name);
+  add(fmt::format("median {}", kind.unit.empty() ? "error" : kind.unit), [&](S s, double) {
+    return kind.make ? significant(s.median_error) : figure(s.median_error, 3);
+  });
+  if (kind.make) {
+    add(fmt::format("p95 {}", kind.unit.empty() ? "error" : kind.unit),
+        [](S s, double) { return significant(s.p95_error); });
+  }
   add("cpu ms", [](S s, double of) { return figure(of * s.cpu_ms_mean, 1); });
   add("p95 ms", [](S s, double) { return figure(s.cpu_ms_p95, 1); });
   if (results.cells[0].interval_width) {
-    add_column(columns, "maps", results.cells.size(),
+    add_column(columns, kind.make ? "blocks" : "maps", results.cells.size(),
                [&](std::size_t i) { return fmt::format("{}", results.cells[i].maps.size()); });
     add_column(columns, "stopped", results.cells.size(),
                [&](std::size_t i) { return std::string(name(results.cells[i].budget.state)); });
@@ -178,6 +187,7 @@ std::string comparisons_table(const StudyResults& results) {
   std::vector<AdjustedComparison> pairs = compare_all(results.cells);
   std::erase_if(pairs, [](const auto& pair) { return std::isnan(pair.paired.p_value); });
   if (pairs.empty()) return {};
+  const bool localiser = results.cells[0].cell.system.is_localiser();
   std::vector<TextColumn> columns;
   const auto add = [&](const std::string& head, auto text) {
     add_column(columns, head, pairs.size(), [&](std::size_t i) { return text(pairs[i]); });
@@ -189,7 +199,9 @@ std::string comparisons_table(const StudyResults& results) {
   add("only second", [](P p) { return fmt::format("{}", p.paired.only_b); });
   add("p", [](P p) { return p_text(p.paired.p_value); });
   add("p by Holm", [](P p) { return p_text(p.p_holm); });
-  return "\nsame queries, by a paired t-test over maps:\n" + text_table(std::move(columns));
+  return fmt::format("\nsame {}, by a paired t-test over {}:\n", localiser ? "queries" : "trials",
+                     localiser ? "maps" : "blocks") +
+         text_table(std::move(columns));
 }
 
 std::string world_names(const Study& study) {
@@ -247,6 +259,11 @@ std::string calibrations_text(const StudyResults& results) {
 }
 
 std::string conditions(const Study& study, const StudyResults& results) {
+  if (!results.cells[0].cell.system.is_localiser()) {
+    const bool with_rigs = uses_told_rigs(system_of(study.file));
+    return (with_rigs ? rig_text(study) : fmt::format("true rig {}\n", study.file.rig)) +
+           calibrations_text(results) + system_conditions(study, world_names(study));
+  }
   const std::vector<std::string> keys = swept_keys(results);
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
@@ -289,9 +306,9 @@ std::string study_table(const Study& study, const StudyResults& results) {
     const CellSummary& s = figures.summaries.back();
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
   }
-  std::string text = cells_table(results, figures) + worlds_table(results) +
-                     comparisons_table(results) + "\n" + ceiling_line(figures) +
-                     conditions(study, results);
+  std::string text = cells_table(results, figures) + measured_table(results, key_columns(results)) +
+                     worlds_table(results) + comparisons_table(results) + "\n" +
+                     ceiling_line(figures) + conditions(study, results);
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
   if (is_mixture(results.instruction_sets)) {
     text += fmt::format("computed with instruction sets {}: not comparable to the bit\n",

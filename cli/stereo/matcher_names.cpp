@@ -13,26 +13,21 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
-#include "stereo/edge_matcher.h"
 #include "stereo/matcher.h"
-#include "stereo/matching/dense_matchers.h"
+#include "stereo/matching/built_in_matchers.h"
 #include "stereo/matching/external_matcher.h"
-#include "stereo/matching/stretch_correlation.h"
 
 namespace vernier::cli {
 namespace {
 
-constexpr std::array built_in{"edge", "stretch", "bm", "sgbm"};
-
 bool is_built_in(const std::string& name) {
-  return name == "none" || std::find(built_in.begin(), built_in.end(), name) != built_in.end();
+  const std::vector<std::string>& known = built_in_matchers();
+  return name == "none" || std::find(known.begin(), known.end(), name) != known.end();
 }
 
 Matcher matcher_named(const std::string& name) {
-  if (name == "edge") return edge_matcher();
-  if (name == "stretch") return stretch_matcher();
-  if (name == "bm") return bm();
-  if (name == "sgbm") return sgbm();
+  const std::vector<std::string>& known = built_in_matchers();
+  if (std::find(known.begin(), known.end(), name) != known.end()) return built_in_matcher(name);
   throw Error("--matcher", "unknown matcher " + in_quotes(name),
               "supported: edge, stretch, bm, sgbm, or a name defined by --command NAME=…");
 }

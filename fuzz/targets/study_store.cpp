@@ -43,11 +43,17 @@ void require_same_trials(const std::vector<TrialResult>& a, const std::vector<Tr
     require(
         same_pose(s.truth, t.truth) && same_pose(s.answer, t.answer) && same_pose(s.node, t.node),
         "the poses of trials are kept");
-    require(same(s.error_m, t.error_m) && same(s.node_error_m, t.node_error_m) &&
+    require(same(s.error, t.error) && same(s.node_error_m, t.node_error_m) &&
                 same(s.heading_error_rad, t.heading_error_rad) && same(s.score, t.score) &&
                 same(s.runner_up, t.runner_up) && same(s.cpu_ms, t.cpu_ms) &&
-                same(s.wall_ms, t.wall_ms) && same(s.probability, t.probability),
+                same(s.wall_ms, t.wall_ms) && same(s.probability, t.probability) &&
+                same(s.limit, t.limit),
             "the figures of trials are kept");
+    require(s.failure == t.failure && s.measured.has_value() == t.measured.has_value() &&
+                (!s.measured ||
+                 std::equal(s.measured->begin(), s.measured->end(), t.measured->begin(),
+                            t.measured->end(), [](double p, double q) { return same(p, q); })),
+            "what trials of other systems say is kept");
   }
 }
 
@@ -89,7 +95,7 @@ std::vector<TrialResult> example_trials(int block) {
     trial.trial = static_cast<std::uint32_t>(2 * block) + static_cast<std::uint32_t>(i);
     trial.truth = {1.0 / 3, -2.0 / 7, 0.1};
     trial.status = i == 0 ? LocalisationStatus::answered : LocalisationStatus::tie;
-    trial.error_m = trial.node_error_m = trial.heading_error_rad = i == 0 ? 0.125 : std::nan("");
+    trial.error = trial.node_error_m = trial.heading_error_rad = i == 0 ? 0.125 : std::nan("");
     trial.lines = 12;
     trial.score = 4.5;
   }

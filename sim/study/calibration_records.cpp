@@ -48,7 +48,8 @@ std::vector<MissingRecord> missing_records(const Study& study,
   for (std::size_t job = 0; job < work.blocks.size(); ++job) {
     if (work.blocks[job].block != 0) continue;
     const StudyCell& cell = study.file.cells[static_cast<std::size_t>(work.blocks[job].cell)];
-    if (!cell.told.calibration) continue;
+    // Of a study of calibrations the trials say it.
+    if (!cell.told.calibration || cell.system.name == "calibration") continue;
     std::string key = calibration_key(study, cell);
     if (!seen.insert(key).second || stored.notes().count(key) > 0) continue;
     if (static_cast<int>(job % static_cast<std::size_t>(run.shard.count)) != run.shard.index) {

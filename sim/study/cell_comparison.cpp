@@ -46,6 +46,10 @@ double exact_mcnemar(int only_a, int only_b) {
 }  // namespace
 
 bool share_queries(const CellResult& a, const CellResult& b) {
+  // Trials of other systems may have no pose that would tell them apart.
+  if (!a.cell.system.is_localiser() && a.cell.experiment.seed != b.cell.experiment.seed) {
+    return false;
+  }
   const auto common = common_blocks(a, b);
   return !common.empty() && std::all_of(common.begin(), common.end(), [](const auto& pair) {
     return pair.first->queries == pair.second->queries;

@@ -2,12 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/interval.h"
 
 namespace vernier::sim::internal {
+
+/// A quantity that a system measures, over the trials in which it is known.
+struct MeasuredSummary {
+  int trials = 0;
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double rms = std::numeric_limits<double>::quiet_NaN();
+  double median = std::numeric_limits<double>::quiet_NaN();
+};
 
 /// The figures of a cell's trials.
 struct CellSummary {
@@ -22,11 +32,14 @@ struct CellSummary {
   double coverage = 0;                    ///< fraction answered
   double success_when_answered = 0;
   double best_guess_success = 0;         ///< where an unsure localiser's best guess counts too
-  int failed = 0;                        ///< trials in which the localiser itself failed
+  int failed = 0;                        ///< trials in which the system itself failed
+  std::string why_failed;                ///< the first one's reason, where it is stored
   double node_success = 0;               ///< for the map node instead of the refined pose
   double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
-  double median_error_m = 0;             ///< over answered trials
+  double median_error = 0;               ///< over answered trials, in the unit of the system
+  double p95_error = 0;                  ///< the same
   double median_heading_error_rad = 0;
+  std::vector<MeasuredSummary> measured;  ///< of other systems than localisers, by their names
   double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
 };
 

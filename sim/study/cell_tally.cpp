@@ -35,6 +35,23 @@ double quantile_or_nan(std::vector<double> values, double p) {
   return quantile(std::move(values), p, QuantileKind::linear);
 }
 
+/// Of the values that are known.
+MeasuredSummary quantity_of(std::vector<double>& values) {
+  MeasuredSummary summary;
+  summary.trials = static_cast<int>(values.size());
+  if (values.empty()) return summary;
+  double sum = 0, squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += value * value;
+  }
+  const auto n = static_cast<double>(values.size());
+  summary.mean = sum / n;
+  summary.rms = std::sqrt(squares / n);
+  summary.median = quantile(std::move(values), 0.5, QuantileKind::linear);
+  return summary;
+}
+
 }  // namespace
 
 void CellTally::add(const TrialResult& t) {
@@ -43,17 +60,26 @@ void CellTally::add(const TrialResult& t) {
   cpu_ms_ += t.cpu_ms;
   cpus_ms_.push_back(t.cpu_ms);
   wall_ms_ += t.wall_ms;
-  guesses_ += t.error_m <= success_radius_m;
-  cell_.summary.failed += t.status == LocalisationStatus::failed;
+  guesses_ += t.error <= t.limit;
+  if (t.status == LocalisationStatus::failed && cell_.summary.failed++ == 0) {
+    cell_.summary.why_failed = t.failure;
+  }
   cell_.stated.add(t);
+  if (t.measured) {
+    measured_.resize(t.measured->size());
+    for (std::size_t i = 0; i < t.measured->size(); ++i) {
+      const double value = (*t.measured)[i];
+      if (std::isfinite(value)) measured_[i].push_back(value);
+    }
+  }
   if (!t.answered()) return;
   const double turn = std::abs(t.heading_error_rad);
   ++answered_;
   successes_ += t.success();
   node_ += t.node_error_m <= success_radius_m;
-  close_ += t.error_m <= 0.5 && turn <= 5 * degree;
-  closer_ += t.error_m <= 0.25 && turn <= 2 * degree;
-  errors_m_.push_back(t.error_m);
+  close_ += t.error <= 0.5 && turn <= 5 * degree;
+  closer_ += t.error <= 0.25 && turn <= 2 * degree;
+  errors_.push_back(t.error);
   turns_rad_.push_back(turn);
 }
 
@@ -74,7 +100,8 @@ void CellTally::finish() {
     s.success_interval_95 = anytime_interval_95(cell_.maps);  // the one that it stops by
   }
   if (!s.success_interval_95) {
-    s.why_no_interval = fmt::format("needs {} maps, has {}", fewest_maps, s.maps);
+    s.why_no_interval = fmt::format("needs {} {}, has {}", fewest_maps,
+                                    cell_.cell.system.is_localiser() ? "maps" : "blocks", s.maps);
   }
   s.coverage = answered_ / n;
   s.success_when_answered = answered_ > 0 ? static_cast<double>(successes_) / answered_ : 0;
@@ -82,7 +109,9 @@ void CellTally::finish() {
   s.node_success = node_ / n;
   s.recall_05 = close_ / n;
   s.recall_025 = closer_ / n;
-  s.median_error_m = quantile_or_nan(std::move(errors_m_), 0.5);
+  s.median_error = quantile_or_nan(errors_, 0.5);
+  s.p95_error = quantile_or_nan(std::move(errors_), 0.95);
+  for (std::vector<double>& values : measured_) s.measured.push_back(quantity_of(values));
   s.median_heading_error_rad = quantile_or_nan(std::move(turns_rad_), 0.5);
   s.cpu_ms_mean = cpu_ms_ / n;
   s.cpu_ms_median = quantile_or_nan(cpus_ms_, 0.5);

@@ -11,7 +11,8 @@
 namespace vernier::sim::internal {
 
 /// Takes a cell's trials block by block and makes its figures of them, so that the trials need not
-/// be kept: 24 bytes a trial are, until the end, for the quantiles.
+/// be kept: 24 bytes a trial are, and 8 for each quantity of another system,, until the end, for
+/// the quantiles.
 class CellTally {
  public:
   /// Keeps a reference to the cell.
@@ -27,8 +28,9 @@ class CellTally {
 
   CellResult& cell_;
   int answered_ = 0, successes_ = 0, guesses_ = 0, node_ = 0, close_ = 0, closer_ = 0;
-  double cpu_ms_ = 0, wall_ms_ = 0;                     // sums
-  std::vector<double> errors_m_, turns_rad_, cpus_ms_;  // the first two of answers
+  double cpu_ms_ = 0, wall_ms_ = 0;                   // sums
+  std::vector<double> errors_, turns_rad_, cpus_ms_;  // the first two of answers
+  std::vector<std::vector<double>> measured_;         // known values of each
 };
 
 }  // namespace vernier::sim::internal

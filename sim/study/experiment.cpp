@@ -3,7 +3,6 @@
 #include "sim/experiment.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +25,7 @@
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/study/reconstruct.h"
+#include "sim/study/trial_clock.h"
 #include "sim/told_rigs.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
@@ -40,12 +40,6 @@ namespace {
 
 /// Offset of the trial numbers of maps, so that maps and queries use different streams.
 constexpr std::uint32_t map_trial = 0x80000000u;
-
-double clock_ms(clockid_t clock) {
-  timespec now{};
-  ::clock_gettime(clock, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 bool has_mount_error(const SourceSettings& sources) {
   return sources.mount_height_m > 0 || sources.mount_pitch_deg > 0 || sources.mount_roll_deg > 0;
@@ -252,13 +246,13 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     std::vector<StereoCorner> corners =
         described(sighting, pose, draw, changed_ ? changed_appearance_.get() : appearance_.get());
 
-    const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
+    const TrialClock clock;
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
     looks.back().view.corners = std::move(corners);
     answer =
         looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
-    result.cpu_ms += clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu + answer.program_cpu_ms;
-    result.wall_ms += clock_ms(CLOCK_MONOTONIC) - wall;
+    result.cpu_ms += clock.cpu_ms() + answer.program_cpu_ms;
+    result.wall_ms += clock.wall_ms();
 
     if (taken == 0) first = std::move(sighting);
     if (answer.status == LocalisationStatus::answered) break;
@@ -277,13 +271,13 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.runner_up = answer.runner_up;
   result.probability =
       std::isfinite(answer.probability) ? std::clamp(answer.probability, 0.0, 1.0) : 0;
-  result.error_m = result.node_error_m = result.heading_error_rad =
+  result.error = result.node_error_m = result.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
   if (result.answered() || answer.status == LocalisationStatus::unsure) {
     const bool has_node = answer.node >= 0 && answer.node < static_cast<int>(map.nodes.size());
     result.answer = answer.pose;
     result.node = has_node ? map.nodes[answer.node].pose : answer.pose;
-    result.error_m = distance_m(answer.pose, result.truth);
+    result.error = distance_m(answer.pose, result.truth);
     result.node_error_m = distance_m(result.node, result.truth);
     result.heading_error_rad = heading_difference_rad(answer.pose, result.truth);
   }
@@ -296,7 +290,7 @@ TrialResult LocalisationExperiment::spoilt_trial(std::uint32_t trial, std::strin
   spoilt.truth = place_of(trial);
   spoilt.status = LocalisationStatus::failed;
   spoilt.failure = std::move(failure);
-  spoilt.error_m = spoilt.node_error_m = spoilt.heading_error_rad =
+  spoilt.error = spoilt.node_error_m = spoilt.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
   return spoilt;
 }

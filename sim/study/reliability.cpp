@@ -27,14 +27,14 @@ constexpr std::array<double, 13> limits{1,    0.5,  0.2,  0.1,  0.05, 0.02, 0.01
 
 void StatedErrors::add(const TrialResult& trial) {
   ++trials_;
-  if (!std::isfinite(trial.error_m)) return;  // no guess
+  if (!std::isfinite(trial.error)) return;  // no guess
   states_probabilities_ |= trial.probability > 0;
   const double stated = std::clamp(1 - trial.probability, 0.0, 1.0);
   if (trial.answered()) {
     ++answered_;
     stated_of_answers_ += stated;
   }
-  const bool wrong = trial.error_m > success_radius_m;
+  const bool wrong = trial.error > trial.limit;
   const auto above = std::upper_bound(borders.begin(), borders.end() - 1, stated);
   Count& range = by_range_[static_cast<std::size_t>(above - borders.begin()) - 1];
   ++range.answers;

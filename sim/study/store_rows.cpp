@@ -14,6 +14,7 @@
 
 #include "calib/base/fingerprint.h"
 #include "calib/base/json_whole.h"
+#include "calib/base/utf8.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -28,8 +29,13 @@ namespace {
 
 using TrialJson = nlohmann::json;
 
-/// Older stores have no number of looks and no probability.
-constexpr std::size_t fields_of_a_trial = 17, fields_of_old_trials = 15;
+/// Older stores have no number of looks and no probability. Trials of other systems than localisers
+/// have fields of their own.
+constexpr std::size_t fields_of_a_trial = 17, fields_of_old_trials = 15,
+                      fields_of_other_systems = 10;
+
+/// Of the reason that is stored, bytes.
+constexpr std::size_t longest_failure = 200;
 
 TrialJson number_or_null(double value) {
   return std::isfinite(value) ? TrialJson(value) : TrialJson(nullptr);
@@ -41,9 +47,9 @@ TrialJson pose_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, pose.headi
 class TrialRow {
  public:
   TrialRow(const TrialJson& row, const std::string& place) : row_(row), place_(place) {
-    if (!row.is_array() ||
-        (row.size() != fields_of_a_trial && row.size() != fields_of_old_trials)) {
-      fail("a trial is no list of 17 or 15 fields");
+    if (!row.is_array() || (row.size() != fields_of_a_trial && row.size() != fields_of_old_trials &&
+                            row.size() != fields_of_other_systems)) {
+      fail("a trial is no list of 17, 15 or 10 fields");
     }
   }
 
@@ -57,6 +63,7 @@ class TrialRow {
   int count() { return static_cast<int>(whole(0, std::numeric_limits<int>::max())); }
   double real() { return real(next()); }
   bool is_old() const { return row_.size() == fields_of_old_trials; }
+  bool is_of_other_system() const { return row_.size() == fields_of_other_systems; }
   double probability() {
     const double value = real();
     if (value < 0 || value > 1) fail(beyond);
@@ -72,6 +79,29 @@ class TrialRow {
     const TrialJson& field = next();
     if (field.is_null() && !needed) return std::numeric_limits<double>::quiet_NaN();
     return real(field);
+  }
+  /// The largest error of a success.
+  double limit() {
+    const double value = real();
+    if (!(value > 0)) fail(beyond);
+    return value;
+  }
+  /// Of numbers, null for those that are unknown.
+  std::vector<double> measured() {
+    const TrialJson& field = next();
+    if (!field.is_array()) fail("what was measured is no list");
+    std::vector<double> values;
+    for (const TrialJson& value : field) {
+      values.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : real(value));
+    }
+    return values;
+  }
+  std::string text() {
+    const TrialJson& field = next();
+    if (!field.is_string() || field.get_ref<const std::string&>().size() > longest_failure) {
+      fail("a reason is no text of 200 bytes at most");
+    }
+    return field;
   }
   Pose2D pose() {
     const TrialJson& field = next();
@@ -105,9 +135,19 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
   t.status = static_cast<LocalisationStatus>(
       row.whole(0, static_cast<std::int64_t>(LocalisationStatus::too_few_corners)));
   t.truth = row.pose();
+  if (row.is_of_other_system()) {
+    t.answer = row.pose();
+    t.error = row.error(t.answered());
+    t.limit = row.limit();
+    t.measured = row.measured();
+    t.cpu_ms = row.time_ms();
+    t.wall_ms = row.time_ms();
+    t.failure = row.text();
+    return t;
+  }
   t.answer = row.pose();
   t.node = row.pose();
-  t.error_m = row.error(t.answered());
+  t.error = row.error(t.answered());
   t.node_error_m = row.error(t.answered());
   t.heading_error_rad = row.error(t.answered());
   t.lines = row.count();
@@ -121,6 +161,27 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
   t.looks = row.count();
   t.probability = row.probability();
   return t;
+}
+
+/// As much of a reason as is stored: whole characters.
+std::string shown_failure(const std::string& failure) {
+  const std::string start = failure.substr(0, longest_failure);
+  return start.substr(0, first_bad_utf8(start));
+}
+
+TrialJson other_trial_json(const TrialResult& t) {
+  TrialJson measured = TrialJson::array();
+  for (const double value : *t.measured) measured.push_back(number_or_null(value));
+  return {t.trial,
+          static_cast<int>(t.status),
+          pose_json(t.truth),
+          pose_json(t.answer),
+          number_or_null(t.error),
+          t.limit,
+          measured,
+          t.cpu_ms,
+          t.wall_ms,
+          shown_failure(t.failure)};
 }
 
 }  // namespace
@@ -141,8 +202,12 @@ BlockRow block_row(std::string cell, int block, const std::vector<TrialResult>& 
 std::string trials_text(const std::vector<TrialResult>& trials) {
   TrialJson rows = TrialJson::array();
   for (const TrialResult& t : trials) {
+    if (t.measured) {
+      rows.push_back(other_trial_json(t));
+      continue;
+    }
     rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
-                    pose_json(t.node), number_or_null(t.error_m), number_or_null(t.node_error_m),
+                    pose_json(t.node), number_or_null(t.error), number_or_null(t.node_error_m),
                     number_or_null(t.heading_error_rad), t.lines, t.score, t.runner_up, t.corners,
                     t.corner_mismatches, t.cpu_ms, t.wall_ms, t.looks, t.probability});
   }

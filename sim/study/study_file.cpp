@@ -21,6 +21,8 @@
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
+#include "sim/study/system_kind.h"
+#include "sim/study/system_reader.h"
 #include "sim/study/told_settings.h"
 #include "sim/visibility.h"
 
@@ -95,6 +97,11 @@ StudyCell StudyReader::read_cell(const toml::table& root, toml::source_index lin
   cell.experiment = reader.read_settings(root, sources_);
   reader.read_world(root, cell);
   cell.told = ToldReader(place(), line).read(root);
+  cell.system = SystemReader(place(), line).read(root);
+  if (system_kind(cell.system.name).sources == SourcesUsed::none) {
+    cell.experiment.sources.calibration = 0;
+  }
+  if (cell.system.name == "calibration" && !cell.told.calibration) cell.told.calibration.emplace();
   return cell;
 }
 
@@ -120,8 +127,9 @@ void StudyReader::check_sweep_key(const toml::table& root,
                                   const std::string& key,
                                   const toml::node& node) const {
   const std::string head = key.substr(0, key.find('.'));
-  const Keys sections{"study",   "world",  "rig", "calibration", "sources",
-                      "corners", "camera", "map", "localiser",   "histograms"};
+  const Keys sections{"study",  "world", "rig",       "calibration", "sources", "corners",
+                      "camera", "map",   "localiser", "histograms",  "system",  "parameters"};
+  SystemReader(place()).check_sweep_key(root, key, node);
   if (key == "rig.file" && !(section(root, "rig") && section(root, "rig")->contains("truth"))) {
     fail(node, "a rig is its own truth unless rig.truth is given: the cells would show other rigs",
          "name the true rig as rig.truth; rig.file is then what the estimator is told of it");
@@ -136,8 +144,8 @@ void StudyReader::check_sweep_key(const toml::table& root,
        key == "study.trials" || key == "study.interval_width" || key == "sources.file" ||
        key == "rig.truth" || key == "calibration.observations")) {
     fail(node, "'" + shortened(key) + "' cannot be swept",
-         "sweep a key of [sources], [corners], [camera], [map], [localiser] or [calibration], "
-         "study.protocol, study.seed, world.file or rig.file");
+         "sweep a key of [sources], [corners], [camera], [map], [localiser], [calibration], "
+         "[system] or [parameters], study.protocol, study.seed, world.file or rig.file");
   }
   if (key.find('.') == std::string::npos || node.is_table()) {
     fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),
@@ -238,6 +246,10 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
     result.swept = std::move(swept);
     result.settings = settings_of(result.experiment);
     result.settings.merge(shown_settings_of(result.told));
+    std::erase_if(result.settings, [&](const auto& setting) {
+      return !uses_setting(system_kind(result.system.name), setting.first);
+    });
+    result.settings.merge(settings_of(result.system));
     for (const std::string& key : study.sweep_keys) {
       if (key == "world.file") result.settings[key] = result.world;
     }
@@ -296,13 +308,16 @@ void check_program_is_asked(const StudyFile& study) {
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
-              "localiser", "histograms", "sweep", "one_at_a_time", "tune"},  // [tune]: sim/tuning
+              "localiser", "histograms", "system", "parameters", "sweep", "one_at_a_time",
+              "tune"},  // [tune]: sim/tuning
              "");
   StudyFile study;
   note_lines(root, study);
   read_study_section(root, study);
   study.sources = read_sources_file(root, sources);
-  read_cell(root);  // the file's own values first, with their own lines
+  // The file's own values first, with their own lines.
+  const bool localises = read_cell(root).system.is_localiser();
+  if (!localises) study.trials_per_block = independent_block_size(study.trials);
   read_sweep(root, study);
   check_complete(root, study.sweep_keys);
   check_sweep_size(root, study);
@@ -338,6 +353,10 @@ std::vector<std::string> named_by_cells(const StudyFile& study,
 
 }  // namespace
 
+const SystemKind& system_of(const StudyFile& study) {
+  return system_kind(study.cells[0].system.name);
+}
+
 std::string place_of(const StudyFile& study, const std::string& key) {
   auto line = study.lines.find(key);
   if (line == study.lines.end()) line = study.lines.find(key.substr(0, key.find('.')));
@@ -361,6 +380,8 @@ std::string swept_value(const StudyCell& cell, std::string_view key) {
 }
 
 int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
+
+int independent_block_size(int trials) { return std::clamp(trials / 30, 1, 50); }
 
 StudyFile parse_study(const std::string& text,
                       const std::string& place,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/experiment.h"
+#include "sim/study/system_kind.h"
 #include "sim/study/told_settings.h"
 #include "sim/visibility.h"
 
@@ -25,6 +26,7 @@ struct StudyCell {
   std::string world = "workshop";  ///< its file
   VisibilityMethod visibility = VisibilityMethod::exact;
   ToldSettings told;
+  SystemSettings system;
 };
 
 /// A cell's value of a swept key; empty if it has none.
@@ -34,10 +36,13 @@ std::string swept_value(const StudyCell& cell, std::string_view key);
 /// least six maps, the minimum for an interval.
 int block_size(int trials);
 
+/// The same for systems whose trials share nothing: a thirtieth of the trials, 1 to 50.
+int independent_block_size(int trials);
+
 /// Content of a study file (docs/file-formats.md).
 struct StudyFile {
   int trials = 900;                      ///< per cell; at most, with an interval_width
-  int trials_per_block = 50;             ///< block_size(trials)
+  int trials_per_block = 50;             ///< block_size(trials), or that of independent trials
   std::optional<double> interval_width;  ///< at which a cell stops (budget.h); none: never before
   std::string world = "workshop";        ///< file of the first cell's world
   std::string rig = "nominal";           ///< file of the true rig, one for all cells
@@ -48,6 +53,9 @@ struct StudyFile {
   std::string place;                                   ///< the file's name, for messages
   std::map<std::string, int> lines;  ///< of tables and dotted keys; of a swept key, its sweep's
 };
+
+/// The kind of system that a study tries, one for all cells.
+const SystemKind& system_of(const StudyFile& study);
 
 /// Where a dotted key of [section] is set: file and line, of the section if it is not set there.
 std::string place_of(const StudyFile& study, const std::string& key);

@@ -53,6 +53,7 @@ constexpr int usual_block = 50;
 
 constexpr const char* source_files = "sources.files";
 constexpr const char* localiser_files = "localiser.files";
+constexpr const char* system_files = "system.files";
 
 /// "1:0.5:0 2:1:1 " as query, `right` and `unaliased`; empty for other text.
 std::vector<std::pair<int, QueryCeiling>> parsed_ceilings(const std::string& text) {
@@ -209,9 +210,14 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   if (study.file.trials_per_block != usual_block) {
     key["study.trials_per_block"] = study.file.trials_per_block;
   }
+  if (const auto command = cell.system.options.find("command");
+      command != cell.system.options.end()) {
+    key[system_files] = fingerprint(files_named_in(command->second));
+  }
   if (const std::string& command = cell.experiment.sources.command; !command.empty()) {
     key[source_files] = fingerprint(files_named_in(command));
   }
+  if (!cell.system.is_localiser()) return key.dump();
   if (cell.experiment.method == "lines") key["localiser.version"] = lines_version;
   if (cell.experiment.method == "program") {
     key[localiser_files] = fingerprint(files_named_in(cell.experiment.localiser.command));
@@ -224,6 +230,7 @@ std::string without_program_files(const std::string& cell_key) {
   if (!key.is_object()) return cell_key;
   key.erase(source_files);
   key.erase(localiser_files);
+  key.erase(system_files);
   return key.dump();
 }
 

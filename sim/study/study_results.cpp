@@ -24,6 +24,7 @@
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::sim::internal {
 
@@ -48,7 +49,9 @@ StudyResults without_trials(const Study& study,
     CellResult result;
     result.cell = cell;
     result.trials_per_block = study.file.trials_per_block;
-    result.ceiling = noted_ceiling(study, stored.notes(), ceiling_key(study, cell));
+    if (cell.system.is_localiser()) {
+      result.ceiling = noted_ceiling(study, stored.notes(), ceiling_key(study, cell));
+    }
     if (cell.told.calibration) {
       result.calibrations = noted_calibrations(stored.notes(), calibration_key(study, cell));
     }
@@ -64,10 +67,20 @@ StudyResults without_trials(const Study& study,
 
 /// A stored block as the study wants it: it may have more trials.
 std::vector<TrialResult> wanted_trials(StoredBlock block,
+                                       const StudyCell& cell,
                                        const BlockJob& job,
                                        const std::filesystem::path& folder) {
   if (block.trials[0].trial != static_cast<std::uint32_t>(job.first)) {
     throw Error(folder.string(), fmt::format("block {} holds other trials", job.block),
+                "delete the stores of the folder and run the study again");
+  }
+  const bool measures = !cell.system.is_localiser();
+  const std::size_t measured = cell.system.measured.size();
+  if (std::any_of(block.trials.begin(), block.trials.end(), [&](const TrialResult& trial) {
+        return trial.measured.has_value() != measures ||
+               (measures && trial.measured->size() != measured);
+      })) {
+    throw Error(folder.string(), fmt::format("block {} holds trials of another system", job.block),
                 "delete the stores of the folder and run the study again");
   }
   block.trials.resize(static_cast<std::size_t>(job.count));
@@ -115,6 +128,8 @@ std::vector<std::string> take_earlier_programs(const Study& study,
     const ExperimentSettings& settings = study.file.cells[i].experiment;
     if (!settings.sources.command.empty()) commands.insert(settings.sources.command);
     if (settings.method == "program") commands.insert(settings.localiser.command);
+    const SystemSettings& system = study.file.cells[i].system;
+    if (system.options.contains("command")) commands.insert(system.text("command"));
   }
   return {commands.begin(), commands.end()};
 }
@@ -144,7 +159,8 @@ StudyResults visit_blocks(const Study& study,
       for (StoredBlock& block : stored.read({work.cell_keys[cell], from, end})) {
         const BlockJob& job = jobs[source][static_cast<std::size_t>(block.block)];
         if (static_cast<int>(block.trials.size()) < job.count) continue;
-        const std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
+        const std::vector<TrialResult> trials =
+            wanted_trials(std::move(block), result.cell, job, folder);
         if (source == cell) ++results.blocks_done;
         result.maps.push_back(count_of(trials));
         if (figures == Figures::made) tally.add(trials);

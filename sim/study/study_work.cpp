@@ -35,7 +35,7 @@ StudyWork study_work(const Study& study) {
     const int number = static_cast<int>(work.cell_keys.size());
     work.cell_keys.push_back(cell_key(study, cell));
     work.same_as.push_back(first_with.emplace(work.cell_keys.back(), number).first->second);
-    ceilings.emplace(ceiling_key(study, cell), &cell);
+    if (cell.system.is_localiser()) ceilings.emplace(ceiling_key(study, cell), &cell);
     if (work.same_as.back() != number) continue;
     for (int first = 0, block = 0; first < trials; first += size, ++block) {
       work.blocks.push_back({number, block, first, std::min(size, trials - first)});

@@ -22,6 +22,8 @@
 #include "sim/study/study_keys.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_work.h"
+#include "sim/study/system_kind.h"
+#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -52,6 +54,10 @@ std::vector<WorkUnit> query_units(const MissingWork& missing) {
 UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
     : study_(study), work_(work), scenes_(study) {
   for (const StudyCell& cell : study.file.cells) {
+    if (!cell.system.is_localiser()) {
+      with_errors_of(place_of(study.file, "system.name"), [&] { return system(cell); });
+      continue;
+    }
     StudyCell still = cell;
     still.experiment.sources.moved = 0;  // a changed world takes time
     const LocalisationExperiment tried(scenes_.visibility(cell), study.rig, nullptr,
@@ -62,6 +68,7 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
 
 void UnitComputer::prepare_maps() {
   for (const StudyCell& cell : study_.file.cells) {
+    if (!cell.system.is_localiser()) continue;
     auto& shared = looks_[looks_key(cell)];
     if (shared) continue;
     shared = std::make_shared<MapViews>(with_errors_of(cell.world, [&] {
@@ -77,15 +84,33 @@ UnitResult UnitComputer::compute(const WorkUnit& unit, const std::stop_token& st
 
 BlockRow UnitComputer::block(const BlockJob& job) const {
   const StudyCell& cell = study_.file.cells[static_cast<std::size_t>(job.cell)];
-  const QueryWorld world = scenes_.queries(cell);
-  const LocalisationExperiment experiment(scenes_.visibility(cell), study_.rig,
-                                          looks_.at(looks_key(cell)), cell.experiment, world.places,
-                                          world.changed, scenes_.told(cell));
   const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
                           .first = static_cast<std::uint32_t>(job.first),
                           .count = static_cast<std::uint32_t>(job.count)};
   return block_row(work_.cell_keys[static_cast<std::size_t>(job.cell)], job.block,
-                   with_errors_of(cell.world, [&] { return experiment.run_block(trials); }));
+                   with_errors_of(cell.world, [&] {
+                     return cell.system.is_localiser() ? localisations(cell, trials)
+                                                       : run_block(*system(cell), trials);
+                   }));
+}
+
+std::vector<TrialResult> UnitComputer::localisations(const StudyCell& cell,
+                                                     const TrialBlock& trials) const {
+  const QueryWorld world = scenes_.queries(cell);
+  const LocalisationExperiment experiment(scenes_.visibility(cell), study_.rig,
+                                          looks_.at(looks_key(cell)), cell.experiment, world.places,
+                                          world.changed, scenes_.told(cell));
+  return experiment.run_block(trials);
+}
+
+std::unique_ptr<SystemUnderTest> UnitComputer::system(const StudyCell& cell) const {
+  const SystemKind& kind = system_kind(cell.system.name);
+  return kind.make({.cell = cell,
+                    .visibility = scenes_.visibility(cell),
+                    .rig = study_.rig,
+                    .places = kind.uses_protocol ? scenes_.queries(cell).places : nullptr,
+                    .told = scenes_.told(cell),
+                    .calibrations = scenes_.calibrations(cell)});
 }
 
 std::shared_ptr<const AliasFinder> UnitComputer::finder(int ceiling) const {

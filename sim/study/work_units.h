@@ -15,8 +15,10 @@
 #include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
+#include "sim/study/study_file.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_work.h"
+#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -57,6 +59,8 @@ class UnitComputer {
 
  private:
   BlockRow block(const BlockJob& job) const;
+  std::vector<TrialResult> localisations(const StudyCell& cell, const TrialBlock& trials) const;
+  std::unique_ptr<SystemUnderTest> system(const StudyCell& cell) const;
   std::vector<std::pair<int, QueryCeiling>> queries(const WorkUnit& unit,
                                                     const std::stop_token& stop) const;
   /// Of the ceiling asked for last, kept.

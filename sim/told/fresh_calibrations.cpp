@@ -50,26 +50,6 @@ class CalibratedRigs : public ToldRigs {
   double psi_c_;
 };
 
-/// The depth that a calibration measures of a point, and its variance as the calibration states it.
-struct MeasuredDepth {
-  double m = 0, variance_m2 = 0;
-};
-
-/// Nothing if the rays of the point do not meet in front of the rig, or if the rig that was found
-/// does not see it.
-std::optional<MeasuredDepth> measured_depth(const FreshCalibration& calibration,
-                                            const PixelPair& pair,
-                                            double range_m) {
-  const std::optional<double> depth_m = try_triangulated_depth_m(calibration.rig, pair);
-  if (!depth_m) return {};
-  try {
-    const Eigen::RowVectorXd g = target_quantity(calibration.rig, "depth", range_m).gradient.row(0);
-    return MeasuredDepth{*depth_m, g.dot(calibration.covariance * g.transpose())};
-  } catch (const Error&) {
-    return {};
-  }
-}
-
 std::string no_depth_reason(double range_m) {
   return fmt::format("the depth of a point at {:g} m is not found with it", range_m);
 }
@@ -180,6 +160,21 @@ std::shared_ptr<const ToldRigs> calibrated_rigs(
   return std::make_shared<const CalibratedRigs>(std::move(calibrations), psi_c);
 }
 
+std::optional<MeasuredDepth> measured_depth(const FreshCalibration& calibration,
+                                            const Rig& truth,
+                                            double range_m) {
+  const std::optional<PixelPair> pair = pixel_pair(truth, {0, 0, range_m});
+  if (!pair) return {};
+  const std::optional<double> depth_m = try_triangulated_depth_m(calibration.rig, *pair);
+  if (!depth_m) return {};
+  try {
+    const Eigen::RowVectorXd g = target_quantity(calibration.rig, "depth", range_m).gradient.row(0);
+    return MeasuredDepth{*depth_m, g.dot(calibration.covariance * g.transpose())};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 CalibrationRecord record_of(const FreshCalibrations& calibrations, int count) {
   std::vector<std::shared_ptr<const FreshCalibration>> all;
   for (int draw = 0; draw < count; ++draw) {
@@ -193,8 +188,8 @@ CalibrationRecord record_of(
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   CalibrationRecord record;
   record.calibrations = static_cast<int>(calibrations.size());
-  const std::optional<PixelPair> pair =
-      truth.cameras.size() == 2 ? pixel_pair(truth, {0, 0, record.range_m}) : std::nullopt;
+  const bool has_depth =
+      truth.cameras.size() == 2 && pixel_pair(truth, {0, 0, record.range_m}).has_value();
   double errors = 0, variances = 0;
   int measured = 0;
   for (const auto& c : calibrations) {
@@ -203,8 +198,8 @@ CalibrationRecord record_of(
       continue;
     }
     const std::optional<MeasuredDepth> depth =
-        pair ? measured_depth(*c, *pair, record.range_m) : std::nullopt;
-    const bool no_depth = pair && !depth;
+        has_depth ? measured_depth(*c, truth, record.range_m) : std::nullopt;
+    const bool no_depth = has_depth && !depth;
     if ((!c->doubt.empty() || no_depth) && record.doubtful++ == 0) {
       record.why_doubtful = c->doubt.empty() ? no_depth_reason(record.range_m) : c->doubt;
     }

@@ -85,6 +85,18 @@ class FreshCalibrations {
 std::shared_ptr<const ToldRigs> calibrated_rigs(
     std::shared_ptr<const FreshCalibrations> calibrations, double psi_c);
 
+/// The depth that a calibration measures of a point, and its variance as the calibration states it.
+struct MeasuredDepth {
+  double m = 0, variance_m2 = 0;
+};
+
+/// Of a point on the true left axis at `range_m`, from its exact images in the two true cameras.
+/// Nothing if its rays do not meet in front of the rig that was found, or a camera of either rig
+/// does not see it.
+std::optional<MeasuredDepth> measured_depth(const FreshCalibration& calibration,
+                                            const Rig& truth,
+                                            double range_m);
+
 /// What becomes of calibrations.
 struct CalibrationRecord {
   int calibrations = 0;

@@ -39,12 +39,12 @@ Objective objective_named(std::string_view wanted) {
 double score(Objective objective, const TrialResult& trial) {
   switch (objective) {
     case Objective::best_guess:
-      return trial.error_m <= success_radius_m ? 1 : 0;
+      return trial.error <= trial.limit ? 1 : 0;
     case Objective::answered_right:
       return !trial.answered() ? 0.5 : trial.success() ? 1 : 0;
     case Objective::error:
       // written so that an error that is not a number counts as no answer
-      return trial.success() ? 1 - std::min(trial.error_m, success_radius_m) / success_radius_m : 0;
+      return trial.success() ? 1 - std::min(trial.error, trial.limit) / trial.limit : 0;
     case Objective::success:
       break;
   }

@@ -60,9 +60,9 @@ TEST_F(Experiments, LinesFindTheRobotUnderAllSources) {
   int right = 0, wrong_though_sure = 0;
   std::vector<double> errors;
   for (const TrialResult& t : trials) {
-    right += t.error_m <= 1;
-    wrong_though_sure += t.answered() && !(t.error_m <= 1);
-    if (t.error_m <= 1) errors.push_back(t.error_m);
+    right += t.error <= 1;
+    wrong_though_sure += t.answered() && !(t.error <= 1);
+    if (t.error <= 1) errors.push_back(t.error);
     EXPECT_EQ(t.looks, 1);
     EXPECT_GE(t.probability, 0);
     EXPECT_LE(t.probability, 1);
@@ -85,7 +85,7 @@ TEST_F(Experiments, LinesFindTheRobotWithCamerasAboveEachOther) {
   s.sources.calibration = 0;
   const auto trials = experiment(s).run_block({.block = 0, .first = 0, .count = 60});
   EXPECT_GE(std::count_if(trials.begin(), trials.end(),
-                          [](const TrialResult& t) { return t.error_m <= 1; }),
+                          [](const TrialResult& t) { return t.error <= 1; }),
             40);
 }
 
@@ -179,7 +179,7 @@ TEST_F(Experiments, RunsALocaliserOfOnesOwn) {
   EXPECT_EQ(first.turns, (std::vector<double>{0.5, 0.5}));
   EXPECT_EQ(trial.status, LocalisationStatus::unsure);
   EXPECT_FALSE(trial.success());
-  EXPECT_NEAR(trial.error_m, distance_m(map.nodes[0].pose, trial.truth), 1e-12);
+  EXPECT_NEAR(trial.error, distance_m(map.nodes[0].pose, trial.truth), 1e-12);
 }
 
 /// Corners in views change nothing of what is drawn, nor of what other methods answer.
@@ -211,7 +211,7 @@ TEST_F(Experiments, CornersFindTheRobotExactlyWithoutErrors) {
   for (const TrialResult& t : experiment(s).run_block({.block = 0, .first = 0, .count = 20})) {
     answered += t.answered();
     if (t.answered()) {
-      EXPECT_LT(t.error_m, 1e-4);
+      EXPECT_LT(t.error, 1e-4);
     }
   }
   EXPECT_GE(answered, 14);
@@ -302,8 +302,8 @@ TEST_F(Experiments, MountErrorsActOnWhatIsSeen) {
     EXPECT_EQ(exact[i].truth.x_m, off[i].truth.x_m);
     EXPECT_FALSE(same(exact[i], off[i]));
     EXPECT_TRUE(same(off[i], again[i]));
-    before += exact[i].error_m <= 1;
-    after += off[i].error_m <= 1;
+    before += exact[i].error <= 1;
+    after += off[i].error <= 1;
   }
   EXPECT_LE(after, before);
   // Each map's drive has a mount of its own.

@@ -22,14 +22,14 @@ TrialResult guess(double probability, double error_m) {
   TrialResult trial;
   trial.status = LocalisationStatus::unsure;
   trial.probability = probability;
-  trial.error_m = error_m;
+  trial.error = error_m;
   return trial;
 }
 
 TrialResult no_guess() {
   TrialResult trial;
   trial.status = LocalisationStatus::no_match;
-  trial.error_m = std::numeric_limits<double>::quiet_NaN();
+  trial.error = std::numeric_limits<double>::quiet_NaN();
   return trial;
 }
 

@@ -58,7 +58,7 @@ std::vector<double> numbers_of(const ExperimentSettings& s) {
       office, rig, std::make_shared<MapViews>(map_views(office, rig.rig, s)), s);
   std::vector<double> numbers;
   for (const TrialResult& t : experiment.run_block({.block = 0, .first = 0, .count = 6})) {
-    if (!std::isfinite(t.error_m)) {
+    if (!std::isfinite(t.error)) {
       numbers.push_back(-1);
       continue;
     }

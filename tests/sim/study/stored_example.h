@@ -24,7 +24,7 @@ inline sim::internal::StoredBlock example_block(const std::string& cell, int blo
     t.truth = {1.0 / 3 + i, -2.0 / 7, 0.1 * block};
     t.status =
         i < 4 ? localise::LocalisationStatus::answered : localise::LocalisationStatus::no_match;
-    t.error_m = t.node_error_m = t.heading_error_rad = i < 4 ? 0.3 / (i + 1) : std::nan("");
+    t.error = t.node_error_m = t.heading_error_rad = i < 4 ? 0.3 / (i + 1) : std::nan("");
     t.lines = 17 + i;
     t.score = 1e-17;
     t.cpu_ms = 0.1;

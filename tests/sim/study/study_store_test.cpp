@@ -80,7 +80,7 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   t.trial = 7;
   t.truth = {1.0 / 3, -2.0 / 7, 0.1};
   t.status = LocalisationStatus::too_few_lines;
-  t.error_m = std::nan("");
+  t.error = std::nan("");
   t.score = 1e-17;
   t.looks = 3;
   t.probability = 1.0 / 3;
@@ -96,7 +96,7 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   EXPECT_EQ(again.blocks[0].trials[0].score, 1e-17);
   EXPECT_EQ(again.blocks[0].trials[0].looks, 3);
   EXPECT_EQ(again.blocks[0].trials[0].probability, 1.0 / 3);
-  EXPECT_TRUE(std::isnan(again.blocks[0].trials[0].error_m));
+  EXPECT_TRUE(std::isnan(again.blocks[0].trials[0].error));
   EXPECT_EQ(again.notes.at("k"), "v");
   EXPECT_EQ(again.notes.count("none"), 0u);
 }

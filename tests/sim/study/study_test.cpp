@@ -63,7 +63,7 @@ class StudyRuns : public testing::Test {
         char line[400];
         std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %a %d %a\n", t.trial,
                       static_cast<int>(t.status), t.truth.x_m, t.truth.heading_rad, t.answer.x_m,
-                      t.answer.y_m, t.answer.heading_rad, t.error_m, t.score, t.lines, t.runner_up);
+                      t.answer.y_m, t.answer.heading_rad, t.error, t.score, t.lines, t.runner_up);
         text += line;
       }
     }
@@ -334,9 +334,9 @@ TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
   const PairedComparison c = compare(a, b);
   EXPECT_EQ(c.both + c.only_a + c.only_b + c.neither, 100);
   const CellSummary small = a.summary, large = b.summary;
-  const double middle = results.cells[1].summary.median_error_m;
-  EXPECT_LT(small.median_error_m, middle);  // psi_c 0.1, 1, 10
-  EXPECT_LT(middle, large.median_error_m);
+  const double middle = results.cells[1].summary.median_error;
+  EXPECT_LT(small.median_error, middle);  // psi_c 0.1, 1, 10
+  EXPECT_LT(middle, large.median_error);
   ASSERT_TRUE(small.success_interval_95);
   EXPECT_GE(small.success_interval_95->high, small.success);
   EXPECT_LE(small.success_interval_95->low, small.success_interval_binomial_95.low + 1e-12);
@@ -415,7 +415,7 @@ TEST_F(StudyRuns, FiguresDoNotNeedTheTrials) {
       ASSERT_EQ(b.trials.size(), std::min<std::size_t>(kept, 30));
       for (std::size_t k = 0; k < b.trials.size(); ++k) EXPECT_EQ(b.trials[k].trial, k);
       EXPECT_EQ(a.summary.success, b.summary.success);
-      EXPECT_EQ(a.summary.median_error_m, b.summary.median_error_m);
+      EXPECT_EQ(a.summary.median_error, b.summary.median_error_m);
       EXPECT_EQ(a.summary.cpu_ms_p95, b.summary.cpu_ms_p95);
       EXPECT_EQ(a.stated.thresholds().size(), b.stated.thresholds().size());
     }
@@ -427,14 +427,14 @@ TEST_F(StudyRuns, FiguresDoNotNeedTheTrials) {
   int right = 0;
   for (const TrialResult& t : cell.trials) {
     right += t.success();
-    if (t.answered()) errors.push_back(t.error_m);
+    if (t.answered()) errors.push_back(t.error);
   }
   std::sort(errors.begin(), errors.end());
   EXPECT_EQ(cell.summary.trials, 30);
   EXPECT_EQ(cell.summary.success, right / 30.0);
   ASSERT_FALSE(errors.empty());
   const std::size_t half = errors.size() / 2;
-  EXPECT_NEAR(cell.summary.median_error_m,
+  EXPECT_NEAR(cell.summary.median_error,
               errors.size() % 2 ? errors[half] : (errors[half - 1] + errors[half]) / 2, 1e-15);
 }
 
@@ -506,9 +506,9 @@ TEST(McNemar, IsTheExactBinomialTail) {
   for (std::uint32_t i = 0; i < 10; ++i) {
     in_a[i].trial = i;
     in_a[i].status = LocalisationStatus::answered;
-    in_a[i].error_m = 0.1;
+    in_a[i].error = 0.1;
     in_b.push_back(in_a[i]);
-    if (i >= 2) in_b[i].error_m = 3;
+    if (i >= 2) in_b[i].error = 3;
   }
   const PairedComparison c = compare(cell_of(in_a, 1), cell_of(in_b, 1));
   EXPECT_EQ(c.only_a, 8);

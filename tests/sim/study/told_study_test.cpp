@@ -97,7 +97,7 @@ class ToldStudies : public testing::Test {
       char line[400];
       std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %d\n", t.trial,
                     static_cast<int>(t.status), t.truth.x_m, t.truth.heading_rad, t.answer.x_m,
-                    t.answer.heading_rad, t.error_m, t.score, t.lines);
+                    t.answer.heading_rad, t.error, t.score, t.lines);
       text += line;
     }
     return text;
@@ -188,7 +188,7 @@ TEST_F(ToldStudies, AToldLensModelMayDifferFromTheTrueOne) {
     const TrialResult &a = none[0].trials[i], &b = richer[0].trials[i];
     EXPECT_EQ(a.status, b.status);
     if (a.answered()) {
-      EXPECT_NEAR(a.error_m, b.error_m, 1e-6);
+      EXPECT_NEAR(a.error, b.error, 1e-6);
     }
   }
   const auto pinhole = run(study_of("[calibration]\nviews = 20\nmodel = \"pinhole\"\n"));

@@ -125,10 +125,10 @@ TEST(TuneSettings, RefusesWhatCannotBeRacedOrConfirmed) {
 TEST(Objective, ScoresAreInTheUnitInterval) {
   TrialResult right, wrong, none, unsure;
   right.status = wrong.status = localise::LocalisationStatus::answered;
-  right.error_m = 0.25;
-  wrong.error_m = 1.5;
-  unsure.error_m = 0.5;
-  none.error_m = std::numeric_limits<double>::quiet_NaN();
+  right.error = 0.25;
+  wrong.error = 1.5;
+  unsure.error = 0.5;
+  none.error = std::numeric_limits<double>::quiet_NaN();
   const auto all = [&](Objective o) {
     return std::vector<double>{score(o, right), score(o, wrong), score(o, none), score(o, unsure)};
   };

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/experiment.h"
+
+namespace vernier::sim::internal {
+
+class SystemUnderTest;
+struct SystemSetup;
+
+/// A key of [system] that a kind of system has of its own.
+struct SystemOption {
+  enum class Type {
+    number,  ///< `low` to `high`
+    whole,   ///< the same, without fraction
+    word,    ///< one of `words`
+    text,    ///< anything; needed where `usual` is empty
+    names,   ///< list of names of what a trial measures, each once; not swept
+  };
+
+  std::string name;
+  Type type = Type::number;
+  std::string usual = {};  ///< default, as in SystemSettings
+  double low = 0, high = 0;
+  std::vector<std::string> words = {};
+  bool optional = false;  ///< a text that may be left out, and is then empty
+};
+
+/// What a study tries: the table [system] of its file.
+struct SystemSettings {
+  std::string name = "localiser";
+  double success_error = success_radius_m;        ///< an answer is right up to this error
+  std::map<std::string, std::string> options;     ///< all of its kind, as text
+  std::map<std::string, std::string> parameters;  ///< of [parameters], as JSON
+  std::vector<std::string> measured;              ///< names of TrialResult::measured
+
+  bool is_localiser() const { return name == "localiser"; }
+  /// Of options; they are there for every cell of the kind.
+  double number(const std::string& option) const;
+  int whole(const std::string& option) const;
+  const std::string& text(const std::string& option) const;
+};
+
+/// Which of the sources of error act on a system.
+enum class SourcesUsed { none, calibration, all };
+
+/// A kind of system that studies can try.
+struct SystemKind {
+  std::string name;
+  std::string noun;         ///< in messages: "a calibration"
+  std::string error_name;   ///< column of its error, with the unit: "depth_error_m"
+  std::string error_title;  ///< the same on axes: "depth error"
+  std::string unit;         ///< "m"; empty: none
+  double success_error = std::numeric_limits<double>::quiet_NaN();  ///< default; NaN: to be given
+  std::vector<SystemOption> options = {};
+  std::vector<std::string> measured = {};  ///< what a trial measures besides; `names` add to it
+  std::vector<std::string> of_either_sign = {};  ///< of these, those told by their RMS in tables
+  /// Tables of a study file that it uses besides [study], [system], [rig], [sweep] and [tune].
+  std::vector<std::string> sections = {};
+  SourcesUsed sources = SourcesUsed::none;
+  bool uses_protocol = false;  ///< study.protocol
+  bool tells_rigs = false;     ///< the estimator may be told another rig than the true one
+  /// Null for localisers, which the engine runs itself, as their cells share maps.
+  std::function<std::unique_ptr<SystemUnderTest>(const SystemSetup&)> make = {};
+};
+
+/// Makes a kind known to studies, once at the start of a program; replaces one of the same name.
+/// Not while studies are read or run.
+void register_system(SystemKind kind);
+
+/// Throws std::out_of_range if there is none of the name.
+const SystemKind& system_kind(const std::string& name);
+
+/// Ascending, "localiser" among them.
+std::vector<std::string> system_names();
+
+}  // namespace vernier::sim::internal

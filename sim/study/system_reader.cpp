@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/system_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/base/program_run.h"
+#include "calib/base/shown_text.h"
+#include "calib/base/toml_reader.h"
+#include "calib/error.h"
+#include "sim/study/system_kind.h"
+
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
+namespace {
+
+using Type = SystemOption::Type;
+
+bool has(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// Columns of a trial that every system has.
+const std::vector<std::string> own_columns{"cell",    "block", "trial",  "status", "answered",
+                                           "success", "error", "cpu_ms", "wall_ms"};
+
+/// Names of columns of results: small letters, digits and underscores, a letter first.
+bool is_name(const std::string& text) {
+  constexpr std::size_t longest = 40;
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !text.empty() && text.size() <= longest && is_letter(text[0]) &&
+         std::all_of(text.begin(), text.end(),
+                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+}  // namespace
+
+const SystemKind& SystemReader::kind_of(const toml::table& root) const {
+  const toml::node* section = root.get("system");
+  if (!section) return system_kind("localiser");
+  const toml::table& system = table(*section, "[system]");
+  const toml::node& node = required(system, "name", "[system]");
+  const std::string name = text(node, "system.name");
+  const std::vector<std::string> known = system_names();
+  if (!has(known, name)) {
+    fail(node, "unknown system " + in_quotes(name), "use " + alternatives(known));
+  }
+  return system_kind(name);
+}
+
+std::string SystemReader::number_text(const toml::node& node, const SystemOption& option) const {
+  const std::string what = "system." + option.name;
+  const double value =
+      option.type == Type::whole ? static_cast<double>(integer(node, what)) : number(node, what);
+  if (!(value >= option.low && value <= option.high)) {
+    fail(node, fmt::format("{} = {} is out of range", what, value),
+         fmt::format("use {} to {}", option.low, option.high));
+  }
+  return fmt::format("{}", value);
+}
+
+std::string SystemReader::value_of(const toml::node& node, const SystemOption& option) const {
+  if (option.type == Type::number || option.type == Type::whole) return number_text(node, option);
+  const std::string what = "system." + option.name;
+  const std::string said = text(node, what);
+  if (option.type == Type::word && !has(option.words, said)) {
+    fail(node, what + " is " + in_quotes(said), "use " + alternatives(option.words));
+  }
+  if (said.empty()) fail(node, what + " is empty", "give it, or leave the key out");
+  if (option.name != "command") return said;
+  try {
+    command_words(said, what);
+  } catch (const Error& error) {
+    fail(node, what + " has an " + error.fault(), error.remedy());
+  }
+  return said;
+}
+
+void SystemReader::read_names(const toml::node& node, SystemSettings& settings) const {
+  constexpr std::size_t most = 50;
+  for (const toml::node& value : list(node, "system.measured")) {
+    const std::string name = text(value, "an entry of system.measured");
+    if (!is_name(name) || has(own_columns, name)) {
+      fail(value, in_quotes(name) + " is no name of what is measured",
+           "use small letters, digits and underscores, and none of " + alternatives(own_columns));
+    }
+    if (has(settings.measured, name)) {
+      fail(value, "system.measured lists " + in_quotes(name) + " twice", "remove one");
+    }
+    settings.measured.push_back(name);
+    if (settings.measured.size() > most) {
+      fail(value, fmt::format("system.measured has more than {} names", most), "name fewer");
+    }
+  }
+}
+
+void SystemReader::read_options(const toml::table& section,
+                                const SystemKind& kind,
+                                SystemSettings& settings) const {
+  Keys keys{"name"};
+  if (!settings.is_localiser()) keys.push_back("success_error");
+  for (const SystemOption& option : kind.options) keys.push_back(option.name);
+  check_keys(section, keys, "[system]");
+  if (const auto* node = section.get("success_error")) {
+    settings.success_error = number(*node, "system.success_error");
+    if (!(settings.success_error > 0)) {
+      fail(*node, "system.success_error is not above 0",
+           "give the largest error of a trial that counts as a success");
+    }
+  } else if (std::isnan(settings.success_error)) {
+    required(section, "success_error", "[system]");
+  }
+  for (const SystemOption& option : kind.options) {
+    const toml::node* node = section.get(option.name);
+    if (option.type == Type::names) {
+      if (node) read_names(*node, settings);
+    } else if (node) {
+      settings.options[option.name] = value_of(*node, option);
+    } else if (!option.usual.empty() || option.optional) {
+      settings.options[option.name] = option.usual;
+    } else {
+      required(section, option.name.c_str(), "[system]");
+    }
+  }
+}
+
+void SystemReader::read_parameters(const toml::table& section, SystemSettings& settings) const {
+  for (const auto& [key, node] : section) {
+    const std::string name(key.str()), what = "parameters." + name;
+    nlohmann::json value;
+    if (node.is_boolean()) {
+      value = node.as_boolean()->get();
+    } else if (node.is_string()) {
+      value = text(node, what);
+    } else if (node.is_integer()) {
+      value = integer(node, what);
+    } else if (node.is_number()) {
+      value = number(node, what);
+    } else {
+      fail(node, shortened(what) + " is neither a number nor a text nor a boolean",
+           "give one value; to try several, sweep \"" + shortened(what) + "\"");
+    }
+    settings.parameters[name] = value.dump();
+  }
+}
+
+/// Throws Error for a key that has no effect on the system.
+void SystemReader::refuse(const toml::table& root,
+                          const char* section,
+                          const char* key,
+                          const SystemKind& kind) const {
+  const toml::table* table = root.get_as<toml::table>(section);
+  const toml::node* node = table ? table->get(key) : nullptr;
+  if (!node) return;
+  fail(*node, fmt::format("{}.{} has no effect on {}", section, key, kind.noun), "remove it");
+}
+
+void SystemReader::check_use(const toml::table& root, const SystemKind& kind) const {
+  const std::vector<std::string> always{"study", "system", "rig", "sweep", "tune"};
+  for (const auto& [key, node] : root) {
+    const std::string name(key.str());
+    if (has(always, name) || has(kind.sections, name)) continue;
+    fail(node, fmt::format("[{}] has no effect on {}", name, kind.noun), "remove it");
+  }
+  if (!kind.uses_protocol) refuse(root, "study", "protocol", kind);
+  if (!kind.tells_rigs) {
+    refuse(root, "rig", "truth", kind);
+    refuse(root, "rig", "error", kind);
+  }
+  const toml::table* sources = root.get_as<toml::table>("sources");
+  if (!sources || kind.sources != SourcesUsed::calibration) return;
+  for (const auto& [key, node] : *sources) {
+    if (key.str() == "calibration") continue;
+    fail(
+        node,
+        fmt::format("sources.{} has no effect on {}", shortened(std::string(key.str())), kind.noun),
+        "remove it; sources.calibration alone acts");
+  }
+}
+
+SystemSettings SystemReader::read(const toml::table& root) const {
+  const SystemKind& kind = kind_of(root);
+  check_use(root, kind);
+  SystemSettings settings;
+  settings.name = kind.name;
+  settings.success_error = kind.success_error;
+  settings.measured = kind.measured;
+  const toml::table empty;
+  const toml::table* section = root.get_as<toml::table>("system");
+  read_options(section ? *section : empty, kind, settings);
+  if (const toml::node* node = root.get("parameters")) {
+    read_parameters(table(*node, "[parameters]"), settings);
+  }
+  return settings;
+}
+
+void SystemReader::check_sweep_key(const toml::table& root,
+                                   const std::string& key,
+                                   const toml::node& at) const {
+  const SystemKind& kind = kind_of(root);
+  const auto fixed = [&](const SystemOption& option) {
+    return option.type == Type::names && key == "system." + option.name;
+  };
+  if (key != "system.name" && std::none_of(kind.options.begin(), kind.options.end(), fixed)) return;
+  fail(at, in_quotes(key) + " cannot be swept: the cells would have other columns",
+       "make a study for each");
+}
+
+std::map<std::string, std::string> settings_of(const SystemSettings& system) {
+  std::map<std::string, std::string> all;
+  if (system.is_localiser()) return all;
+  all["system.name"] = system.name;
+  all["system.success_error"] = fmt::format("{}", system.success_error);
+  for (const auto& [name, value] : system.options) all["system." + name] = value;
+  for (const auto& [name, value] : system.parameters) {
+    const nlohmann::json json = nlohmann::json::parse(value);
+    all["parameters." + name] = json.is_string() ? json.get<std::string>() : value;
+  }
+  if (system_kind(system.name).measured.size() == system.measured.size()) return all;
+  for (const std::string& name : system.measured) {
+    std::string& names = all["system.measured"];
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return all;
+}
+
+bool uses_setting(const SystemKind& kind, const std::string& key) {
+  const std::string section = key.substr(0, key.find('.'));
+  if (section == "rig") return true;
+  if (section == "study") return key != "study.protocol" || kind.uses_protocol;
+  if (section == "sources" && kind.sources == SourcesUsed::calibration) {
+    return key == "sources.calibration";
+  }
+  return has(kind.sections, section);
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <map>
+#include <string>
+
+#include "calib/base/toml_reader.h"
+#include "sim/study/system_kind.h"
+
+namespace vernier::sim::internal {
+
+/// Reads [system] and [parameters] of a study.
+class SystemReader : public vernier::internal::TomlReader {
+ public:
+  using TomlReader::TomlReader;
+
+  /// Throws Error for an unknown system or option, a value out of its range, and a table or key of
+  /// the study that the system does not use.
+  SystemSettings read(const toml::table& root) const;
+
+  /// Throws Error for a key that cannot be swept though it is of [system].
+  void check_sweep_key(const toml::table& root, const std::string& key, const toml::node& at) const;
+
+ private:
+  const SystemKind& kind_of(const toml::table& root) const;
+  std::string value_of(const toml::node& node, const SystemOption& option) const;
+  std::string number_text(const toml::node& node, const SystemOption& option) const;
+  void read_options(const toml::table& section,
+                    const SystemKind& kind,
+                    SystemSettings& settings) const;
+  void read_names(const toml::node& node, SystemSettings& settings) const;
+  void read_parameters(const toml::table& section, SystemSettings& settings) const;
+  void check_use(const toml::table& root, const SystemKind& kind) const;
+  void refuse(const toml::table& root,
+              const char* section,
+              const char* key,
+              const SystemKind& kind) const;
+};
+
+/// The system's settings by dotted key; none of a localiser's.
+std::map<std::string, std::string> settings_of(const SystemSettings& system);
+
+/// Whether a setting of an experiment, by its dotted key, is of those that the system uses.
+bool uses_setting(const SystemKind& kind, const std::string& key);
+
+}  // namespace vernier::sim::internal

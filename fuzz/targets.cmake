@@ -39,6 +39,7 @@ set(vernier_fuzz_targets
   fuzz/targets/stereo_scenes.cpp
   fuzz/targets/study_store.cpp
   fuzz/targets/study_toml.cpp
+  fuzz/targets/system_answer.cpp
   fuzz/targets/text_numbers.cpp
   fuzz/targets/toml.cpp
   fuzz/targets/trajectory.cpp

@@ -10,6 +10,7 @@
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
 #include "sim/study/study_file.h"
+#include "sim/systems/systems.h"
 #include "sim/tuning/tune_settings.h"
 
 namespace vernier::fuzz {
@@ -41,7 +42,14 @@ void require_confirmations(const std::string& text, const StudyFile& study) {
   }
 }
 
+/// What studies can try besides localisers.
+void know_systems() {
+  static const bool known = (register_systems(), true);
+  static_cast<void>(known);
+}
+
 void run_study_toml(std::string_view bytes) {
+  know_systems();
   const auto study = accepted([&] { return parse_study(std::string(bytes), "study.toml"); });
   if (!study) return;
   require_whole_study(*study);
@@ -76,7 +84,13 @@ std::vector<std::string> study_toml_seeds() {
       "[study]\ntrials = 60\n[sweep]\n\"map.spacing_m\" = [0.5, 1]\n\"localiser.method\" = "
       "[\"lines\", \"pgh\"]\n\"sources.calibration\" = [1, 3]\n[tune]\nobjective = \"error\"\n"
       "indifference = 0.02\nerror_rate = 0.1\nconditions = [\"sources.calibration\"]\n"
-      "confirm_worlds = [\"a\", \"b\"]\nconfirm_seed = 3\nconfirm_trials = 12\n"};
+      "confirm_worlds = [\"a\", \"b\"]\nconfirm_seed = 3\nconfirm_trials = 12\n",
+      "[study]\n[system]\nname = \"calibration\"\nsuccess_error = 0.1\nrange_m = 4\n"
+      "[calibration]\nviews = 5\n[sweep]\n\"system.range_m\" = [2, 4]\n",
+      "[study]\n[system]\nname = \"program\"\ncommand = \"./a 'b c'\"\nsuccess_error = 1\n"
+      "measured = [\"drift_m\"]\n[parameters]\ngain = 1.5\nmode = \"fast\"\non = true\n"
+      "[sweep]\n\"parameters.gain\" = [1, 2]\n",
+      "[study]\n[system]\nname = \"servoing\"\ngoal = \"model\"\n[one_at_a_time]\n"};
 }
 
 std::vector<std::string> sources_toml_seeds() {

@@ -172,7 +172,7 @@ SystemKind matcher_kind() {
   return {.name = "matcher",
           .noun = "a matcher",
           .error_name = "share_not_right",
-          .error_title = "share of edges without a right disparity",
+          .error_title = "share of edges not right",
           .unit = "",
           .success_error = 0.2,
           .options = {{.name = "matcher", .type = Type::word, .usual = "edge", .words = matchers},

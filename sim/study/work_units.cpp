@@ -2,16 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/work_units.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "calib/error.h"
+#include "localise/localiser.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
@@ -64,6 +69,24 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
                                        still.experiment, scenes_.queries(still).places, nullptr,
                                        scenes_.told(cell));
   }
+  try_program();
+}
+
+void UnitComputer::try_program() const {
+  const StudyCell& cell = study_.file.cells[0];
+  const auto command = cell.system.options.find("command");
+  if (command == cell.system.options.end() || command->second.empty()) return;
+  constexpr std::uint32_t tried = 3;
+  const std::unique_ptr<SystemUnderTest> asked = system(cell);
+  std::string why;
+  for (std::uint32_t trial = 0; trial < tried; ++trial) {
+    const TrialResult result = asked->run(trial);
+    if (result.status != localise::LocalisationStatus::failed) return;
+    if (why.empty()) why = result.failure;
+  }
+  throw Error(place_of(study_.file, "system.command"),
+              fmt::format("the program failed in the first {} trials: {}", tried, why),
+              "run it by hand with a question of docs/systems.md");
 }
 
 void UnitComputer::prepare_maps() {

@@ -45,7 +45,8 @@ std::vector<WorkUnit> query_units(const MissingWork& missing);
 /// Computes units, from any thread. A result depends on the study and the unit only.
 class UnitComputer {
  public:
-  /// Keeps references to the study and its work. Throws Error if a cell cannot be run.
+  /// Keeps references to the study and its work. Throws Error if a cell cannot be run, or a program
+  /// under test cannot.
   UnitComputer(const Study& study, const StudyWork& work);
 
   /// What cells share.
@@ -61,6 +62,9 @@ class UnitComputer {
   BlockRow block(const BlockJob& job) const;
   std::vector<TrialResult> localisations(const StudyCell& cell, const TrialBlock& trials) const;
   std::unique_ptr<SystemUnderTest> system(const StudyCell& cell) const;
+  /// Throws Error if a program of the first cell fails in its first three trials, before hours are
+  /// spent on it.
+  void try_program() const;
   std::vector<std::pair<int, QueryCeiling>> queries(const WorkUnit& unit,
                                                     const std::stop_token& stop) const;
   /// Of the ceiling asked for last, kept.

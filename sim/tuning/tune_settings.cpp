@@ -18,6 +18,7 @@
 #include "calib/error.h"
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::sim::internal {
 
@@ -72,6 +73,12 @@ class TuneReader : private SettingsReader {
   void refuse_other_studies(const toml::table& root) const {
     if (const auto* node = root.get("one_at_a_time")) {
       fail(*node, "a race is run over a [sweep]", "leave [one_at_a_time] out");
+    }
+    const std::vector<std::string>& used = system_of(study_).sections;
+    if (std::find(used.begin(), used.end(), "world") == used.end()) {
+      fail(*root.get("tune"),
+           fmt::format("a race confirms on other worlds, and {} has none", system_of(study_).noun),
+           "compare its cells by vernier study");
     }
     const toml::table& own = *section(root, "study");
     if (const auto* node = own.get("interval_width")) {

@@ -25,7 +25,7 @@ export function making_section(report) {
   ].filter(([, value]) => value).map(([name, value]) => ({ name, value }));
   const made = section("making", "How to reproduce", paragraph("The same program, files and seed"
     + " give the same results, except for timings, on processors of the same class, for any"
-    + " number of threads or machines."));
+    + " number of threads or machines.", commands_words(studies)));
   made.append(table("Program and inputs", [
     { head: "Item", text: true, cell: (row) => row.name },
     { head: "Value", text: true, cell: (row) => row.value },
@@ -38,11 +38,21 @@ export function making_section(report) {
   }
 }
 
+/** Of programs that vernier only calls. */
+function commands_words(studies) {
+  const commands = new Set(studies.flatMap(({ study }) => (study.cells ?? [])
+    .map((cell) => cell_key(cell, "system.command")).filter(Boolean)));
+  if (!commands.size) return null;
+  return [" They also need this command, with the same answers: ",
+    [...commands].map((command, i) => [i ? ", " : "", element("code", {}, command)]), "."];
+}
+
 /** What a study was made with; of several, each under its name. */
 function study_rows({ name, study }) {
   const of = (item) => name ? `${name}: ${item.toLowerCase()}` : item;
   return [
     [of("Study file"), study.file], [of("Method"), study.method],
+    [of("System"), study.system?.name],
     [of("Trials per cell"), count(study.trials)],
     [of("Seed"), is_number(study.seed) ? String(study.seed) : null],
     [of("Computed by"), study.machines?.join("; ")],

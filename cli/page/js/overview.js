@@ -1,20 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 import { paragraph, section, small, table } from "./elements.js";
-import { DASH, count, metres, percent, range_percent } from "./format.js";
+import { DASH, count, percent, range_percent } from "./format.js";
 import { figure } from "./plot.js";
 import { multiples_height, multiples_plot } from "./small_multiples.js";
-import { world_of } from "./study.js";
+import { cell_key, world_of } from "./study.js";
 import { success_of } from "./sweep.js";
 import { swept_keys } from "./sweep_layout.js";
+import { error_of, success_words } from "./trials.js";
 
 /** More cells make a figure that nobody reads; each study has its own below. */
 const MOST_ROWS = 40;
 
 /** All cells of several studies in one figure and one table. */
 export function overview_section(studies) {
-  const made = section("studies", "All studies", paragraph("Each study has its own queries: only"
-    + " cells of one study are compared in pairs."));
+  const others = studies.some(({ study }) => study.system);
+  const made = section("studies", "All studies", paragraph(`Each study has its own`
+    + ` ${others ? "trials" : "queries"}: only cells of one study are compared in pairs.`));
   const together = joined(studies);
   if (together.cells.length <= MOST_ROWS) {
     const drawn = figure("Success in all studies", "Dots: success rate of a cell; bars: 95 %"
@@ -23,17 +25,34 @@ export function overview_section(studies) {
     () => multiples_plot(together, success_of(together)));
     if (drawn) made.append(drawn);
   }
-  made.append(table("Cells of all studies", [
-    { head: "Study", text: true, cell: ({ study }) => study },
+  made.append(table("Cells of all studies", overview_columns(others), studies.flatMap((one) =>
+    one.study.cells.map((cell) => ({ ...one, cell })))));
+}
+
+/** `others`: there are other systems than localisers, with a success and an error of their own. */
+function overview_columns(others) {
+  const of_others = (text) => others ? text : DASH;
+  return [
+    { head: "Study", text: true, cell: ({ name }) => name },
     { head: "Cell", text: true, cell: ({ cell }) => cell.label ?? DASH },
-    { head: "World", text: true, cell: ({ world }) => world ?? DASH },
-    { head: "Protocol", text: true, cell: ({ cell }) => cell.protocol ?? DASH },
+    { head: "System", text: true,
+      cell: ({ study }) => of_others(study.system?.name ?? "localiser") },
+    { head: "World", text: true, cell: (one) => world_of(one, one.cell)?.name
+      ?? cell_key(one.cell, "world.file") ?? DASH },
+    { head: "Protocol", text: true,
+      cell: ({ cell }) => cell.protocol ?? cell_key(cell, "study.protocol") ?? DASH },
     { head: "Trials", cell: ({ cell }) => count(cell.trials) },
     { head: "Success", small: "95 % interval", cell: ({ cell }) => [percent(cell.success),
       cell.success_interval_95 && small(range_percent(cell.success_interval_95))] },
-    { head: "Error", small: "median", cell: ({ cell }) => metres(cell.median_error_m) },
-  ], studies.flatMap((one) => one.study.cells.map((cell) =>
-    ({ study: one.name, world: world_of(one, cell)?.name, cell })))));
+    { head: "Success means", text: true,
+      cell: ({ study, cell }) => of_others(success_words(study, cell)) },
+    { head: "Error", small: "median", cell: ({ study, cell }) => median_error(study, cell) },
+  ];
+}
+
+function median_error(study, cell) {
+  const { key, write } = error_of(study);
+  return write(cell[key]);
 }
 
 /** One study of the cells of all, with the study as a swept key, the last. */

@@ -13,6 +13,7 @@ import { reliability_section } from "./reliability.js";
 import { rigs_sections } from "./rig.js";
 import { cells_section, comparisons_section, headline } from "./study.js";
 import { sweep_section } from "./sweep.js";
+import { system_cells_section, system_headline } from "./system.js";
 
 function masthead(report) {
   const title = report.title || "Vernier report";
@@ -39,9 +40,11 @@ function colophon(report) {
 /** What the page says of a study. */
 function study_sections({ study, world, worlds }) {
   if (study?.cells?.length) {
-    headline({ study, world, worlds });
+    if (study.system) system_headline({ study });
+    else headline({ study, world, worlds });
     if (study.cells.length > 1) sweep_section(study);
-    cells_section({ study });
+    if (study.system) system_cells_section(study);
+    else cells_section({ study });
     reliability_section(study);
     if (study.comparisons?.length) comparisons_section(study);
   }

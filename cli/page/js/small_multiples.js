@@ -117,12 +117,17 @@ function add_marks(layout, cells, quantity, name) {
 /** The axis of a quantity, the same in all panels. */
 function quantity_axis({ title, range, log, of }, cells) {
   const values = cells.map(of).filter(is_number);
-  if (range || !values.length) return axis(title, { range: range ?? [0, 1] });
+  if (range || !values.length) return axis(title, { range: range ?? [0, 1], ...long_title(title) });
   const high = Math.max(...values);
-  if (!log) return axis(title, { range: [0, high > 0 ? 1.08 * high : 1] });
-  return log_axis(`${title} (logarithmic)`, values,
-    { range: [Math.log10(Math.min(...values)) - 0.12, Math.log10(high) + 0.12] });
+  if (!log) return axis(title, { range: [0, high > 0 ? 1.08 * high : 1], ...long_title(title) });
+  const whole = `${title} (logarithmic)`;
+  return log_axis(whole, values, { ...long_title(whole),
+    range: [Math.log10(Math.min(...values)) - 0.12, Math.log10(high) + 0.12] });
 }
+
+/** A title has the room of a panel's height: a long one takes several lines. */
+const long_title = (title) => title.length > 32
+  ? { title: { text: in_lines(title, /(?<= )/), standoff: 8 } } : {};
 
 /** The x axis and the position of cells on it: {axis, at: cell => x}. */
 function x_axis(study, { key, label }, sparse) {
@@ -171,9 +176,9 @@ function as_rows(panels, quantity) {
 }
 
 /** Breaks long names: a row's label takes at most a third of a phone. */
-function in_lines(text) {
+function in_lines(text, gap = /(?<=, )/) {
   const lines = [];
-  for (const word of String(text).split(/(?<=, )/)) {
+  for (const word of String(text).split(gap)) {
     if (lines.length && (lines[lines.length - 1] + word).length <= 26) lines[lines.length - 1] += word;
     else lines.push(word);
   }

@@ -6,6 +6,7 @@ import {
   significant,
 } from "./format.js";
 import { is_number } from "./numbers.js";
+import { test_words, trial_words } from "./trials.js";
 
 const PROTOCOLS = {
   near_path: "queries up to 0.1 m from the recorded route, heading within ± 5° of it",
@@ -41,30 +42,33 @@ const protocol_of = (study, cell) => cell.protocol || study.protocol;
 export function headline(report) {
   const study = report.study;
   const cell = headline_cell(study);
+  headline_box({
+    heading: study.cells.length > 1 ? `Localisation success at ${at_words(cell)}`
+      : "Localisation success",
+    share: cell.success,
+    of: "of queries localised within 1 m of the true position",
+    words: headline_words(study, cell),
+    tiles: headline_tiles(report, cell),
+  });
+}
+
+/** The first section of a study: its success, in figures and in words, and tiles. */
+export function headline_box({ heading, share, of, words, tiles }) {
   const id = part_id("headline");
   const box = element("section", { id, class: "headline", "aria-labelledby": `${id}-heading` },
-    element("h2", { id: `${id}-heading` },
-      study.cells.length > 1 ? `Localisation success at ${at_words(cell)}` : "Localisation success"),
-    element("div", {}, element("div", { class: "figure" }, percent(cell.success)),
-      paragraph("of queries localised within 1 m of the true position")),
-    element("div", { class: "words" }, headline_words(study, cell)),
-    element("dl", { class: "tiles" }, headline_tiles(report, cell)));
+    element("h2", { id: `${id}-heading` }, heading),
+    element("div", {}, element("div", { class: "figure" }, percent(share)), paragraph(of)),
+    element("div", { class: "words" }, words),
+    element("dl", { class: "tiles" }, tiles));
   document.getElementById("report").append(box);
 }
 
-const at_words = (cell) => cell.label === "as set" ? "the settings of the study" : cell.label;
+export const at_words = (cell) => cell.label === "as set" ? "the settings of the study" : cell.label;
 
 function headline_words(study, cell) {
-  const range = cell.success_interval_95;
   const words = [`In ${counted(cell.trials, "trial")}, the robot localised itself within 1 m of`
     + ` its true`
-    + ` position ${percent(cell.success)} of the time.`];
-  if (range) {
-    words.push(` The 95 % confidence interval is ${percent(range[0])} to`
-      + ` ${percent(range[1])}.`);
-  } else if (cell.success_interval_95_missing) {
-    words.push(` No confidence interval: ${cell.success_interval_95_missing}.`);
-  }
+    + ` position ${percent(cell.success)} of the time.`, interval_words(cell)];
   const clustered = cell.success_interval_95 && cell.success_interval_binomial_95;
   const notes = ["Unanswered queries count as failures; heading is not evaluated."];
   if (clustered) {
@@ -74,6 +78,15 @@ function headline_words(study, cell) {
     notes.push(" ψ_c = 1 uses the covariance of the rig's calibration unchanged.");
   }
   return [element("p", {}, words), element("p", {}, notes)];
+}
+
+export function interval_words(cell) {
+  const range = cell.success_interval_95;
+  if (range) {
+    return ` The 95 % confidence interval is ${percent(range[0])} to ${percent(range[1])}.`;
+  }
+  const missing = cell.success_interval_95_missing;
+  return missing ? ` No confidence interval: ${missing}.` : null;
 }
 
 function headline_tiles(report, cell) {
@@ -111,46 +124,62 @@ export function cells_section(report) {
     "Success: position within 1 m of the truth; unanswered queries count as failures. Coverage:"
       + " fraction of answered queries. Errors are medians over answered queries. CPU time is"
       + " from features in memory to the answer."));
-  made.append(table(several ? `Results by cell; ${headline_of_study.label} is the headline`
-    : "Results", cell_columns(study), study.cells,
+  made.append(table(cells_caption(study), cell_columns(study), study.cells,
     { chosen: (cell) => several && cell === headline_of_study }));
 }
 
-function cell_columns(study) {
-  const share = (head, key, small) =>
-    ({ head, small, cell: (cell) => percent(cell[key]) });
+export const cells_caption = (study) => study.cells.length > 1
+  ? `Results by cell; ${headline_cell(study).label} is the headline` : "Results";
+
+export const share_column = (head, key, small) =>
+  ({ head, small, cell: (cell) => percent(cell[key]) });
+
+/** The first columns of every table of cells. */
+export const outcome_columns = () => [
+  { head: "Cell", text: true, cell: (cell) => cell.label ?? DASH },
+  { head: "Trials", cell: (cell) => count(cell.trials) },
+  { head: "Success", small: "95 % interval", cell: (cell) => [percent(cell.success),
+    cell.success_interval_95 && small(range_percent(cell.success_interval_95))] },
+  { head: "Binomial", small: "assuming independent trials",
+    cell: (cell) => range_percent(cell.success_interval_binomial_95) },
+];
+
+export function time_columns() {
   const time = (head, key, small) =>
     ({ head, small, cell: (cell) => significant(cell[key]) });
-  const one_ceiling = new Set(study.cells.map((cell) => ceiling_of(study, cell))).size === 1;
   return [
-    { head: "Cell", text: true, cell: (cell) => cell.label ?? DASH },
-    { head: "Trials", cell: (cell) => count(cell.trials) },
-    { head: "Success", small: "95 % interval", cell: (cell) => [percent(cell.success),
-      cell.success_interval_95 && small(range_percent(cell.success_interval_95))] },
-    { head: "Binomial", small: "assuming independent trials",
-      cell: (cell) => range_percent(cell.success_interval_binomial_95) },
-    { head: "Ceiling", small: "of the world", cell: (cell) =>
-      one_ceiling ? DASH : percent(ceiling_of(study, cell)) },
-    share("Coverage", "coverage"),
-    share("Success", "success_when_answered", "of answered"),
-    share("Node found", "node_success", "map node within 1 m"),
-    { head: "Error", small: "median", cell: (cell) => metres(cell.median_error_m) },
-    { head: "Heading", small: "median error", cell: (cell) =>
-      is_number(cell.median_heading_error_deg)
-        ? `${significant(cell.median_heading_error_deg, 2)}°` : DASH },
-    share("Recall", "recall_0_5m_5deg", "0.5 m, 5°"),
-    share("Recall", "recall_0_25m_2deg", "0.25 m, 2°"),
     time("CPU ms", "cpu_ms_mean", "mean"), time("CPU ms", "cpu_ms_median", "median"),
     time("CPU ms", "cpu_ms_p95", "95 % below"), time("Wall ms", "wall_ms_mean", "mean"),
   ];
 }
 
+function cell_columns(study) {
+  const one_ceiling = new Set(study.cells.map((cell) => ceiling_of(study, cell))).size === 1;
+  return [
+    ...outcome_columns(),
+    { head: "Ceiling", small: "of the world", cell: (cell) =>
+      one_ceiling ? DASH : percent(ceiling_of(study, cell)) },
+    share_column("Coverage", "coverage"),
+    share_column("Success", "success_when_answered", "of answered"),
+    share_column("Node found", "node_success", "map node within 1 m"),
+    { head: "Error", small: "median", cell: (cell) => metres(cell.median_error_m) },
+    { head: "Heading", small: "median error", cell: (cell) =>
+      is_number(cell.median_heading_error_deg)
+        ? `${significant(cell.median_heading_error_deg, 2)}°` : DASH },
+    share_column("Recall", "recall_0_5m_5deg", "0.5 m, 5°"),
+    share_column("Recall", "recall_0_25m_2deg", "0.25 m, 2°"),
+    ...time_columns(),
+  ];
+}
+
 export function comparisons_section(study) {
-  const test = study.comparisons[0]?.test ?? "McNemar's test, assuming independent trials";
+  const test = test_words(study,
+    study.comparisons[0]?.test ?? "McNemar's test, assuming independent trials");
+  const words = trial_words(study);
   const made = section("comparisons", "Paired comparisons", paragraph(
-    "All cells use the same queries and random numbers, so paired comparisons are more sensitive:"
-      + " they count queries that only one of two cells localised within 1 m. p is the probability"
-    + ` of a difference at least this large if neither cell were better (${test}).`));
+    `All cells use the same ${words.noun} and random numbers, so paired comparisons are more`
+      + ` sensitive: they count ${words.only_one}. p is the probability of`
+      + ` a difference at least this large if neither cell were better (${test}).`));
   if (study.comparisons.some((row) => "p_value_holm" in row)) {
     made.append(paragraph("With several comparisons a small p may occur by chance. Holm's p is"
       + " adjusted for their number: a cell is called better if it is below 0.05. If all cells are"
@@ -160,7 +189,7 @@ export function comparisons_section(study) {
       + " by chance; p is not corrected for multiple comparisons."));
   }
   const both_count = (head, key) => ({ head, cell: (row) => count(row[key]) });
-  made.append(table("Queries localised within 1 m by one, both or neither of the two cells", [
+  made.append(table(words.one_both_neither, [
     { head: "Cell A against cell B", text: true, cell: (row) => `${row.a} against ${row.b}` },
     both_count("Both", "both"), both_count("Only A", "only_a"), both_count("Only B", "only_b"),
     both_count("Neither", "neither"),

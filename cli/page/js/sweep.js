@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 import { element, paragraph, section } from "./elements.js";
-import { count, metres, percent, plot_text, range_percent } from "./format.js";
+import { count, percent, plot_text, range_percent } from "./format.js";
 import { bars_in_percent, in_percent, is_number } from "./numbers.js";
 import { figure } from "./plot.js";
 import { multiples_height, multiples_plot, panel_count } from "./small_multiples.js";
 import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 import { sweep_layout, swept_keys } from "./sweep_layout.js";
+import { error_of, trial_words } from "./trials.js";
 
 const SOURCE_MEANING = {
   "sources.calibration": PSI_MEANING,
@@ -35,7 +36,7 @@ export function sweep_section(study) {
   for (const { key } of keys) if (SOURCE_MEANING[key]) made.append(paragraph(SOURCE_MEANING[key]));
   if (by_design) {
     made.append(paragraph("Every cell differs from its reference, the first row, in one source. All"
-      + " use the same queries and random numbers."));
+      + ` use the same ${trial_words(study).noun} and random numbers.`));
   }
   const plots = [success_figure(study, label), error_figure(study, label)].filter(Boolean);
   const side_by_side = panel_count(study) === 1;
@@ -64,19 +65,20 @@ function success_figure(study, label) {
   const ceilings = study.cells.map((cell) => ceiling_of(study, cell)).filter(is_number);
   const ceiling = ceilings.length ? " Dashed line: ceiling of the world, the most that"
     + " one look at lines allows." : "";
-  return figure("Success", `${spread_words(study, "success", percent)} Dots: success rate of`
+  return figure("Success", `${spread_words(study, SUCCESS)} Dots: success rate of`
     + ` a cell; bars: 95 % intervals.${ceiling}`,
     `Success rate with 95 per cent intervals against ${label}; values are in the table of`
       + " all cells.", () => multiples_height(study), () => multiples_plot(study, success_of(study)));
 }
 
-/** "Success goes from 89 % (ψ_c = 0.1) to 34 % (ψ_c = 10)." */
-function spread_words(study, key, write) {
+const SUCCESS = { what: "Success", key: "success", write: percent };
+
+/** "Success ranges from 34 % (ψ_c = 10) to 89 % (ψ_c = 0.1)." */
+function spread_words(study, { what, key, write }) {
   const cells = study.cells.filter((cell) => is_number(cell[key]));
   if (!cells.length) return "";
   const sorted = [...cells].sort((a, b) => a[key] - b[key]);
   const [low, high] = [sorted[0], sorted[sorted.length - 1]];
-  const what = key === "success" ? "Success" : "The median error";
   if (cells.length === 1 || low[key] === high[key]) return `${what} is ${write(low[key])}.`;
   return `${what} ranges from ${write(low[key])} (${low.label}) to ${write(high[key])}`
     + ` (${high.label}).`;
@@ -94,18 +96,21 @@ function ceiling_marks(study, cells) {
 }
 
 function error_figure(study, label) {
-  if (!study.cells.some((cell) => is_number(cell.median_error_m))) return null;
-  return figure("Median error", `${spread_words(study, "median_error_m", metres)} Over` + " all"
-    + " answered queries, including wrong answers; unanswered queries are excluded.",
-    `Median position error against ${label}; values are in the table of all cells.`,
+  const error = error_of(study);
+  if (!study.cells.some((cell) => is_number(cell[error.key]))) return null;
+  const spread = spread_words(study, { ...error, what: `The median ${error.title}` });
+  const { noun } = trial_words(study);
+  return figure(`Median ${error.title}`, `${spread} Over all answered ${noun}, including wrong`
+    + ` answers; unanswered ${noun} are excluded.`,
+    `Median ${error.spoken} against ${label}; values are in the table of all cells.`,
     () => multiples_height(study),
-    () => error_plot(study));
+    () => error_plot(study, error));
 }
 
-function error_plot(study) {
-  const values = study.cells.map((cell) => cell.median_error_m).filter(is_number);
+function error_plot(study, { title, key, axis, write }) {
+  const values = study.cells.map((cell) => cell[key]).filter(is_number);
   const wide = Math.max(...values) / Math.min(...values) > 20 && Math.min(...values) > 0;
-  return multiples_plot(study, { title: "median error, m", log: wide,
-    of: (cell) => cell.median_error_m,
-    words: (cell) => `${plot_text(cell.label)}<br>median error ${metres(cell.median_error_m)}` });
+  return multiples_plot(study, { title: axis, log: wide, of: (cell) => cell[key],
+    words: (cell) => `${plot_text(cell.label)}<br>median ${plot_text(title)}`
+      + ` ${write(cell[key])}` });
 }

@@ -21,7 +21,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
 #include "tests/support/error_message.h"
-#include "tests/support/small_office.h"
+#include "tests/support/example_study.h"
 
 namespace vernier {
 
@@ -114,16 +114,10 @@ TEST(OneAtATime, StandsInEveryCellOfASweepAndIsComparedWithinIt) {
 
 // Half of 2 is 1 and twice 1 is 2: two cells of six differ from others by name only.
 TEST(OneAtATime, CellsThatDoNotDifferAreComputedOnce) {
-  Study study;
-  study.file = parse_study(
+  const Study study = test::office_study(
       "[study]\ntrials = 6\nprotocol = \"near_path\"\n[map]\nspacing_m = 2\n[sweep]\n"
       "\"sources.calibration\" = [1, 2]\n[one_at_a_time]\ndesigns = [\"swept\"]\n"
-      "sources = [\"calibration\"]\nfactors = [0.5, 2]\n",
-      "s.toml");
-  study.world = test::small_office();
-  study.rig = test::nominal_rig();
-  study.world_fingerprint = "office";
-  study.rig_fingerprint = "nominal";
+      "sources = [\"calibration\"]\nfactors = [0.5, 2]\n");
   const StudyWork work = study_work(study);
   EXPECT_EQ(work.same_as, (std::vector<int>{0, 1, 2, 2, 0, 5}));  // 1, 0.5, 2; 2, 1, 4
   EXPECT_EQ(work.blocks.size(), 4u * 6);

@@ -101,6 +101,59 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   EXPECT_EQ(again.notes.count("none"), 0u);
 }
 
+TEST_F(Store, TrialsOfOtherSystemsRoundTripToTheBit) {
+  TrialResult t;
+  t.trial = 7;
+  t.status = LocalisationStatus::failed;
+  t.error = std::nan("");
+  t.limit = 1.0 / 7;
+  t.measured = {1.0 / 3, std::nan(""), -0.0};
+  t.failure = std::string(199, 'x') + "\u00e4\xff";  // cut off within a character
+  TrialResult bare = t;
+  bare.trial = 8;
+  bare.status = LocalisationStatus::answered;
+  bare.error = 1.0 / 9;
+  bare.measured.emplace();
+  bare.failure.clear();
+  const auto read = parse_trials(trials_text({t, bare}), "store");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].limit, 1.0 / 7);
+  ASSERT_TRUE(read[0].measured && read[0].measured->size() == 3);
+  EXPECT_EQ(read[0].measured->at(0), 1.0 / 3);
+  EXPECT_TRUE(std::isnan(read[0].measured->at(1)));
+  EXPECT_TRUE(std::signbit(read[0].measured->at(2)));
+  EXPECT_EQ(read[0].failure, std::string(199, 'x'));
+  EXPECT_TRUE(read[1].success());
+  EXPECT_TRUE(read[1].measured && read[1].measured->empty());
+  EXPECT_EQ(trials_text(read), trials_text(parse_trials(trials_text(read), "store")));
+}
+
+TEST_F(Store, DamagedTrialsOfOtherSystemsAreRefused) {
+  TrialResult t;
+  t.status = LocalisationStatus::answered;
+  t.error = 0.5;
+  t.measured = {2.5};
+  const std::string whole = trials_text({t});
+  const auto complaint = [&](const std::string& part, const std::string& instead) {
+    std::string text = whole;
+    text.replace(text.find(part), part.size(), instead);
+    return refusal([&] { parse_trials(text, "store"); });
+  };
+  const auto expect = [&](const std::string& part, const std::string& instead,
+                          const std::string& about) {
+    const std::string said = complaint(part, instead);
+    EXPECT_NE(said.find(about), std::string::npos) << instead << ": " << said;
+  };
+  EXPECT_EQ(parse_trials(whole, "store").size(), 1U);
+  expect("[2.5]", "2.5", "is no list");
+  expect("[2.5]", "[true]", "is no number");
+  expect("0.5,1.0", "null,1.0", "is no number");  // answered, without an error
+  expect("0.5,1.0", "0.5,0.0", "out of range");   // no limit
+  expect(",\"\"]", ",7]", "a reason is no text");
+  expect(",\"\"]", "]", "fields");
+  expect("\"\"", '"' + std::string(201, 'x') + '"', "a reason is no text");
+}
+
 TEST_F(Store, AnotherKindOfFileIsRefusedAndKept) {
   write_atomically(folder_ / "b.sqlite", "this is no database at all, but it is somebody's file\n");
   sql(folder_ / "d.sqlite", "CREATE TABLE mine (x); INSERT INTO mine VALUES (1)");

@@ -415,7 +415,7 @@ TEST_F(StudyRuns, FiguresDoNotNeedTheTrials) {
       ASSERT_EQ(b.trials.size(), std::min<std::size_t>(kept, 30));
       for (std::size_t k = 0; k < b.trials.size(); ++k) EXPECT_EQ(b.trials[k].trial, k);
       EXPECT_EQ(a.summary.success, b.summary.success);
-      EXPECT_EQ(a.summary.median_error, b.summary.median_error_m);
+      EXPECT_EQ(a.summary.median_error, b.summary.median_error);
       EXPECT_EQ(a.summary.cpu_ms_p95, b.summary.cpu_ms_p95);
       EXPECT_EQ(a.stated.thresholds().size(), b.stated.thresholds().size());
     }

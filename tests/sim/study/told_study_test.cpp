@@ -31,6 +31,7 @@
 #include "sim/study/study_store.h"
 #include "sim/told/fresh_calibrations.h"
 #include "tests/support/error_message.h"
+#include "tests/support/example_study.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -59,12 +60,7 @@ RigEstimate looser(double factor) {
 }
 
 Study study_of(const std::string& text) {
-  Study study;
-  study.file = parse_study(head + text, "s.toml");
-  study.world = test::small_office();
-  study.world_fingerprint = "office";
-  study.rig = test::nominal_rig();
-  study.rig_fingerprint = "nominal";
+  Study study = test::office_study(head + text);
   RigEstimate richer = test::nominal_rig();
   richer.rig = vernier::internal::in_models(richer.rig, {OpenCv4{}, OpenCv4{}});
   richer.covariance.reset();

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+// Matchers as systems under test.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "sim/experiment.h"
+#include "sim/image_systems/matcher_system.h"
+#include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
+#include "sim/study/system_under_test.h"
+#include "tests/support/error_message.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
+
+namespace {
+
+StudyFile matcher_study(const std::string& options) {
+  register_system(matcher_kind());
+  return parse_study(
+      "[study]\ntrials = 6\nseed = 9\nprotocol = \"path\"\n[system]\nname = \"matcher\"\n"
+      "samples = 1\n" +
+          options,
+      "s.toml");
+}
+
+std::unique_ptr<SystemUnderTest> matcher_of_cell(const StudyCell& cell) {
+  return system_kind("matcher").make({.cell = cell,
+                                      .visibility = test::small_office_visibility(),
+                                      .rig = test::nominal_rig(),
+                                      .places = std::make_shared<const QueryPlaces>(
+                                          test::small_office_visibility(), cell.experiment.protocol,
+                                          cell.experiment.mount.height_m)});
+}
+
+TEST(MatcherSystem, ScoresWhatIsNotRightOfTheEdgesOfAPair) {
+  const StudyFile study =
+      matcher_study("[sweep]\n\"system.matcher\" = [\"edge\", \"stretch\", \"bm\", \"sgbm\"]\n");
+  for (const StudyCell& cell : study.cells) {
+    const auto system = matcher_of_cell(cell);
+    const TrialResult result = system->run(1), again = system->run(1);
+    ASSERT_TRUE(result.answered()) << cell.label << ": " << result.failure;
+    const auto& measured = *result.measured;
+    EXPECT_GT(measured[0], 100);  // edges
+    EXPECT_NEAR(result.error, 1 - measured[1] * (1 - measured[2]), 1e-12);
+    EXPECT_GE(result.error, 0);
+    EXPECT_LT(result.error, 0.8) << cell.label;
+    EXPECT_EQ(result.success(), result.error <= 0.2);
+    EXPECT_EQ(result.error, again.error);
+    const localise::Pose2D pose = draw_query(test::small_office_visibility(), QueryProtocol::path,
+                                             cell.experiment.mount.height_m, 9, 1);
+    EXPECT_EQ(result.truth.x_m, pose.x_m);
+  }
+}
+
+TEST(MatcherSystem, SeesTheSameEdgesThroughMoreNoise) {
+  const StudyFile study = matcher_study("[sweep]\n\"system.read_noise_e\" = [1, 400]\n");
+  double quiet = 0, noisy = 0;
+  for (std::uint32_t trial = 0; trial < 3; ++trial) {
+    const TrialResult a = matcher_of_cell(study.cells[0])->run(trial);
+    const TrialResult b = matcher_of_cell(study.cells[1])->run(trial);
+    ASSERT_TRUE(a.answered() && b.answered());
+    EXPECT_EQ(a.truth.heading_rad, b.truth.heading_rad);
+    quiet += a.error;
+    noisy += b.error;
+  }
+  EXPECT_LT(quiet, noisy);
+}
+
+TEST(MatcherSystem, ATrialOfAProgramThatFailsSaysWhy) {
+  const StudyFile study =
+      matcher_study("matcher = \"program\"\ncommand = \"false {left} {right} {output}\"\n");
+  const TrialResult result = matcher_of_cell(study.cells[0])->run(0);
+  EXPECT_EQ(result.status, localise::LocalisationStatus::failed);
+  EXPECT_NE(result.failure.find("false"), std::string::npos) << result.failure;
+  EXPECT_FALSE(result.success());
+}
+
+TEST(MatcherSystem, ACommandIsOfAProgram) {
+  const StudyFile without = matcher_study("matcher = \"program\"\n");
+  EXPECT_NE(test::error_message([&] {
+              matcher_of_cell(without.cells[0]);
+            }).find("system.command: is missing"),
+            std::string::npos);
+  const StudyFile with = matcher_study("command = \"m {left} {right} {output}\"\n");
+  EXPECT_NE(test::error_message([&] {
+              matcher_of_cell(with.cells[0]);
+            }).find("system.matcher is no program"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

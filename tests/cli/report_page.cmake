@@ -22,9 +22,21 @@ execute_process(COMMAND ${VERNIER} study ${FOLDER}/grid.toml -o ${FOLDER}/grid -
 execute_process(COMMAND ${VERNIER} report ${FOLDER}/study ${FOLDER}/grid --no-proof
                         -o ${FOLDER}/several.html
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+file(WRITE ${FOLDER}/calibration.toml
+     "[study]\ntrials = 36\n[system]\nname = \"calibration\"\n[calibration]\n"
+     "pixel_sigma_px = 0.2\n[sweep]\n\"calibration.views\" = [5, 10]\n")
+execute_process(COMMAND ${VERNIER} study ${FOLDER}/calibration.toml -o ${FOLDER}/calibrations -q
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${VERNIER} report ${FOLDER}/calibrations --no-proof
+                        -o ${FOLDER}/calibrations.html
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${VERNIER} report ${FOLDER}/study ${FOLDER}/calibrations --no-proof
+                        -o ${FOLDER}/systems.html
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 execute_process(COMMAND ${VERNIER} report nominal -o ${FOLDER}/rig.html
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html ${FOLDER}/rig.html ${FOLDER}/several.html
+                        ${FOLDER}/calibrations.html ${FOLDER}/systems.html
                 RESULT_VARIABLE status)
 if(status EQUAL 77)
   message("report page: skipped: no playwright-core (npm ci in tests/cli) or no Chromium")

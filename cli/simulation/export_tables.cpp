@@ -134,14 +134,15 @@ void add_system_figures(Row& row, const CellResult& cell) {
   row.real("coverage", of * s.coverage);
   row.real("success_when_answered", of * s.success_when_answered);
   row.whole("failed", s.failed);
+  row.whole("unsure", s.unsure);
   const std::string& error = system_kind(system.name).error_name;
   row.real("median_" + error, s.median_error);
   row.real("p95_" + error, s.p95_error);
-  for (std::size_t i = 0; i < system.measured.size(); ++i) {
+  for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
     const MeasuredSummary m = i < s.measured.size() ? s.measured[i] : MeasuredSummary{};
-    row.real("mean_" + system.measured[i], m.mean);
-    row.real("rms_" + system.measured[i], m.rms);
-    row.real("median_" + system.measured[i], m.median);
+    row.real("mean_" + system.measured_names[i], m.mean);
+    row.real("rms_" + system.measured_names[i], m.rms);
+    row.real("median_" + system.measured_names[i], m.median);
   }
   row.real("cpu_ms_mean", of * s.cpu_ms_mean);
   row.real("cpu_ms_median", s.cpu_ms_median);
@@ -211,17 +212,18 @@ void add_trial(Row& row, const TrialResult& t) {
 
 /// Of another system than a localiser.
 void add_system_trial(Row& row, const SystemSettings& system, const TrialResult& t) {
-  constexpr std::size_t longest_status = 15;
+  constexpr std::size_t longest_status = 15, longest_reason = 200;
   row.whole("trial", t.trial);
   row.text("status", std::string(name(t.status)), longest_status);
   row.flag("answered", t.answered());
   row.flag("success", t.success());
   row.real(system_kind(system.name).error_name, t.error);
-  for (std::size_t i = 0; i < system.measured.size(); ++i) {
-    row.real(system.measured[i], t.measured ? (*t.measured)[i] : no_number);
+  for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
+    row.real(system.measured_names[i], t.measured ? (*t.measured)[i] : no_number);
   }
   row.real("cpu_ms", t.cpu_ms);
   row.real("wall_ms", t.wall_ms);
+  row.text("reason", t.failure, longest_reason);
 }
 
 Row trial_row(const Study& study,

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <opencv2/core/utility.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -80,6 +81,7 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
+  if (system_of(study.file).name == "matcher") cv::setNumThreads(1);  // as evaluate
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };
@@ -130,7 +132,8 @@ void act(const StudyArguments& options, Session& session) {
 void add_study(CLI::App& app, Session& session) {
   auto o = std::make_shared<StudyArguments>();
   CLI::App* verb = add_verb(
-      app, session, "study", "run, resume and merge localisation studies (Monte Carlo trials)",
+      app, session, "study",
+      "run, resume and merge studies (Monte Carlo trials) of localisation and other systems",
       "vernier study FILE.toml -o DIR        # run, or resume the study in DIR\n"
       "  vernier study status DIR\n"
       "  vernier study merge DIR1 DIR2 -o DIR");

@@ -194,13 +194,15 @@ void add_system(const CellResult& cell, Json& json) {
   json["median_error"] = json_number(s.median_error);
   json["p95_error"] = json_number(s.p95_error);
   json["why_failed"] = s.why_failed.empty() ? Json() : Json(s.why_failed);
+  json["unsure"] = s.unsure;
+  json["why_unsure"] = s.why_unsure.empty() ? Json() : Json(s.why_unsure);
   json["measured"] = Json::object();
   for (std::size_t i = 0; i < s.measured.size(); ++i) {
     const MeasuredSummary& m = s.measured[i];
-    json["measured"][system.measured[i]] = {{"trials", m.trials},
-                                            {"mean", json_number(m.mean)},
-                                            {"rms", json_number(m.rms)},
-                                            {"median", json_number(m.median)}};
+    json["measured"][system.measured_names[i]] = {{"trials", m.trials},
+                                                  {"mean", json_number(m.mean)},
+                                                  {"rms", json_number(m.rms)},
+                                                  {"median", json_number(m.median)}};
   }
 }
 

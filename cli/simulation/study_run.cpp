@@ -65,17 +65,24 @@ void run_in_folder(const FolderClaim& claim,
 
 namespace {
 
-/// Failed calibrations are results; of another system that fails nothing is to be trusted.
+/// Failed calibrations are results; of another system that fails nothing is to be trusted, nor
+/// where most calibrations are doubted.
 void tell_failed_system(const CellResult& cell, Session& session) {
   const CellSummary& s = cell.summary;
-  const std::string text =
-      fmt::format("{} failed in {} of {} trials of cell \"{}\"{}{}",
-                  system_kind(cell.cell.system.name).noun, s.failed, s.trials, cell.cell.label,
-                  s.why_failed.empty() ? "" : ", the first by: ", s.why_failed);
-  if (cell.cell.system.name == "calibration" && s.failed < s.trials) {
-    session.warn(text);
-  } else {
-    session.add_trust_warning(text);
+  const std::string& system = cell.cell.system.name;
+  const auto tell = [&](int trials, const char* what, const std::string& why, bool is_result) {
+    const std::string text =
+        fmt::format("{} {} in {} of {} trials of cell \"{}\"{}{}", system_kind(system).noun, what,
+                    trials, s.trials, cell.cell.label, why.empty() ? "" : ", the first by: ", why);
+    is_result ? session.warn(text) : session.add_trust_warning(text);
+  };
+  const bool calibrations_fail = cell.calibrations && cell.calibrations->failed > 0;
+  if (s.failed > 0) {
+    tell(s.failed, "failed", s.why_failed,
+         calibrations_fail || (system == "calibration" && s.failed < s.trials));
+  }
+  if (system == "calibration" && 2 * s.unsure > s.trials - s.failed) {
+    tell(s.unsure, "is doubtful", s.why_unsure, false);
   }
 }
 
@@ -83,13 +90,13 @@ void tell_failed_system(const CellResult& cell, Session& session) {
 
 void tell_failed_trials(const StudyResults& results, Session& session) {
   for (const CellResult& cell : results.cells) {
-    const int failed = cell.summary.failed;
-    if (failed == 0) continue;
-    const SourceSettings& sources = cell.cell.experiment.sources;
     if (!cell.cell.system.is_localiser()) {
       tell_failed_system(cell, session);
       continue;
     }
+    const int failed = cell.summary.failed;
+    if (failed == 0) continue;
+    const SourceSettings& sources = cell.cell.experiment.sources;
     if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
       session.warn(
           fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "

@@ -222,8 +222,8 @@ std::string rig_text(const Study& study) {
   };
   const ToldSettings& told = study.file.cells[0].told;
   if (told.calibration) {
-    return fmt::format("true rig {}; told: a fresh calibration for each trial and each map\n",
-                       study.file.rig);
+    return fmt::format("true rig {}; told: a fresh calibration for each trial{}\n", study.file.rig,
+                       system_of(study.file).name == "localiser" ? " and each map" : "");
   }
   if (told.truth.empty()) {
     return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));

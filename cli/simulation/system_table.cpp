@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "cli/program/text_table.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
@@ -18,13 +19,6 @@
 #include "sim/study/system_kind.h"
 
 namespace vernier::cli {
-namespace {
-
-bool has(const std::vector<std::string>& all, const std::string& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
-}
-
-}  // namespace
 
 std::string significant(double value) {
   return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
@@ -32,11 +26,12 @@ std::string significant(double value) {
 
 std::string measured_table(const StudyResults& results, std::vector<TextColumn> rows) {
   const SystemSettings& system = results.cells[0].cell.system;
-  if (system.measured.empty()) return {};
+  if (system.measured_names.empty()) return {};
   const SystemKind& kind = system_kind(system.name);
-  for (std::size_t i = 0; i < system.measured.size(); ++i) {
-    const std::string& name = system.measured[i];
-    const bool by_rms = has(kind.of_either_sign, name);
+  for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
+    const std::string& name = system.measured_names[i];
+    const bool by_rms = std::find(kind.of_either_sign.begin(), kind.of_either_sign.end(), name) !=
+                        kind.of_either_sign.end();
     TextColumn column{by_rms ? "rms " + name : name, {}};
     for (const CellResult& cell : results.cells) {
       const std::vector<MeasuredSummary>& all = cell.summary.measured;
@@ -45,7 +40,7 @@ std::string measured_table(const StudyResults& results, std::vector<TextColumn> 
     }
     rows.push_back(std::move(column));
   }
-  return "\nmeasured, medians over the trials:\n" + text_table(std::move(rows));
+  return "\nmeasured, medians over the answered trials:\n" + text_table(std::move(rows));
 }
 
 bool uses_told_rigs(const SystemKind& kind) {
@@ -62,8 +57,8 @@ std::string system_conditions(const Study& study, const std::string& worlds) {
   const std::string most =
       one_limit ? fmt::format("{:g}{}{}", limit, kind.unit.empty() ? "" : " ", kind.unit)
                 : "system.success_error";
-  const std::string blocks = fmt::format("blocks of {} trials", study.file.trials_per_block);
-  return (has(kind.sections, "world") ? fmt::format("world {}\n", worlds) : "") +
+  const std::string blocks = "blocks of " + counted(study.file.trials_per_block, "trial");
+  return (kind.uses("world") ? fmt::format("world {}\n", worlds) : "") +
          fmt::format("system {}; success: answered, {} at most {}\n", kind.name, kind.error_title,
                      most) +
          (study.file.interval_width

@@ -15,8 +15,8 @@ namespace vernier::cli {
 /// A quantity in any unit, to three digits; a dash where there is none.
 std::string significant(double value);
 
-/// What other systems than localisers measure besides their error, over the trials of each cell:
-/// medians, and the root mean square of what may have either sign. `rows` names the cells.
+/// What other systems than localisers measure besides their error, over the answered trials of each
+/// cell: medians, and the root mean square of what may have either sign. `rows` names the cells.
 std::string measured_table(const StudyResults& results, std::vector<TextColumn> rows);
 
 /// Whether the estimator may be told another rig than the true one.

@@ -20,7 +20,7 @@ using namespace vernier::sim::internal;
 void run_system_answer(std::string_view bytes) {
   SystemSettings system;
   system.name = "program";
-  system.measured = {"drift_m", "steps"};
+  system.measured_names = {"drift_m", "steps"};
   TrialResult trial;
   trial.error = std::nan("");
   if (!accepted([&] { return (parse_system_answer(bytes, system, trial), 0); })) return;

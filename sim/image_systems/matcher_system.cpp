@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/image_systems/matcher_system.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "calib/base/error_place.h"
+#include "calib/base/thread_clock.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
@@ -16,13 +20,15 @@
 #include "sim/experiment.h"
 #include "sim/images/image_scene.h"
 #include "sim/images/image_truth.h"
+#include "sim/images/lighting.h"
+#include "sim/images/render.h"
 #include "sim/images/rendered_pair.h"
 #include "sim/images/sensor_response.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
-#include "sim/study/trial_clock.h"
 #include "sim/visibility.h"
 #include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
@@ -35,6 +41,7 @@
 
 namespace vernier::sim::internal {
 
+using namespace vernier::internal;
 using localise::LocalisationStatus;
 using localise::Pose2D;
 using stereo::EdgeMetrics;
@@ -66,14 +73,12 @@ PairOptions images_of(const SystemSettings& s) {
 }
 
 Matcher matcher_of(const SystemSettings& s) {
-  const std::string &name = s.text("matcher"), &command = s.text("command");
-  if ((name == "program") == command.empty()) {
-    throw Error("system.command",
-                name == "program" ? "is missing" : "is set, and system.matcher is no program",
-                name == "program" ? "name the program that matches" : "leave it out");
-  }
+  const std::string& name = s.text("matcher");
   if (name != "program") return stereo::internal::built_in_matcher(name);
-  return stereo::internal::external_matcher(command, {.time_limit_s = s.number("time_limit_s")});
+  return with_errors_of("system.command", [&] {
+    return stereo::internal::external_matcher(s.text("command"),
+                                              {.time_limit_s = s.number("time_limit_s")});
+  });
 }
 
 /// Share of the scored edges without a disparity within 1 px of the truth.
@@ -126,11 +131,12 @@ class MatcherSystem : public SystemUnderTest {
         stereo::canny_edges(pair.left, {.noise = images.rectified.left_noise});
     const std::vector<stereo::TruthAtEdge> at_edges =
         stereo::truth_at(stereo::stereo_truth(truth.left, &truth.right), edges);
-    const TrialClock clock;
+    const ThreadClock clock;
     const std::vector<stereo::EdgeDisparity> found =
         matcher_.match(pair, edges, search_range(truth));
-    result.cpu_ms = clock.cpu_ms();
     result.wall_ms = clock.wall_ms();
+    // A program's own time is not known: it counts by the wall, with what is done beside it.
+    result.cpu_ms = cell_.system.command().empty() ? clock.cpu_ms() : result.wall_ms;
     score(stereo::evaluate(edges, found, at_edges, pair.left.width_px), result);
   }
 
@@ -167,32 +173,56 @@ class MatcherSystem : public SystemUnderTest {
 
 SystemKind matcher_kind() {
   using Type = SystemOption::Type;
+  const SurfaceAppearanceOptions look;
+  const LightingOptions light;
+  const SensorOptions sensor;
+  const RenderOptions render;
+  const auto usual = [](auto value) { return fmt::format("{}", value); };
   std::vector<std::string> matchers = stereo::internal::built_in_matchers();
   matchers.push_back("program");
-  return {.name = "matcher",
-          .noun = "a matcher",
-          .error_name = "share_not_right",
-          .error_title = "share of edges not right",
-          .unit = "",
-          .success_error = 0.2,
-          .options = {{.name = "matcher", .type = Type::word, .usual = "edge", .words = matchers},
-                      {.name = "command", .type = Type::text, .optional = true},
-                      {.name = "time_limit_s", .usual = "60", .low = 1e-3, .high = 86400},
-                      {.name = "samples", .type = Type::whole, .usual = "4", .low = 1, .high = 16},
-                      {.name = "texture", .usual = "0.02", .low = 0, .high = 0.3},
-                      {.name = "least_reflectance", .usual = "0.25", .low = 0.01, .high = 1},
-                      {.name = "largest_reflectance", .usual = "0.85", .low = 0.01, .high = 1},
-                      {.name = "ambient", .usual = "0.35", .low = 0, .high = 100},
-                      {.name = "point_spread_px", .usual = "0.6", .low = 0, .high = 10},
-                      {.name = "vignetting", .usual = "0.3", .low = 0, .high = 1},
-                      {.name = "exposure", .usual = "0", .low = 0, .high = 1000},
-                      {.name = "full_well_e", .usual = "10000", .low = 10, .high = 1e7},
-                      {.name = "read_noise_e", .usual = "8", .low = 0, .high = 1e6}},
-          .measured = {"edges", "density", "bad_1", "mismatch", "rms_inlier_px", "bias_inlier_px",
-                       "z_rms"},
-          .sections = {"world", "camera"},
-          .uses_protocol = true,
-          .make = [](const SystemSetup& setup) { return std::make_unique<MatcherSystem>(setup); }};
+  return {
+      .name = "matcher",
+      .noun = "a matcher",
+      .error_name = "share_not_right",
+      .error_title = "share of edges not right",
+      .unit = "",
+      .success_error = 0.2,
+      .options =
+          {{.name = "matcher", .type = Type::word, .usual = "edge", .words = matchers},
+           {.name = "command", .type = Type::command, .only_with = {"matcher", "program"}},
+           {.name = "time_limit_s",
+            .usual = "60",
+            .low = 1e-3,
+            .high = 86400,
+            .only_with = {"matcher", "program"}},
+           {.name = "samples",
+            .type = Type::whole,
+            .usual = usual(render.samples),
+            .low = 1,
+            .high = 16},
+           {.name = "texture", .usual = usual(look.texture_contrast), .low = 0, .high = 0.3},
+           {.name = "least_reflectance",
+            .usual = usual(look.least_reflectance),
+            .low = 0.01,
+            .high = 1},
+           {.name = "largest_reflectance",
+            .usual = usual(look.largest_reflectance),
+            .low = 0.01,
+            .high = 1},
+           {.name = "ambient", .usual = usual(light.ambient), .low = 0, .high = 100},
+           {.name = "point_spread_px",
+            .usual = usual(sensor.point_spread_px),
+            .low = 0,
+            .high = 10},
+           {.name = "vignetting", .usual = usual(sensor.vignetting), .low = 0, .high = 1},
+           {.name = "exposure", .usual = usual(sensor.exposure), .low = 0, .high = 1000},
+           {.name = "full_well_e", .usual = usual(sensor.full_well_e), .low = 10, .high = 1e7},
+           {.name = "read_noise_e", .usual = usual(sensor.read_noise_e), .low = 0, .high = 1e6}},
+      .measured = {"edges", "density", "bad_1", "mismatch", "rms_inlier_px", "bias_inlier_px",
+                   "z_rms"},
+      .sections = {"world", "camera"},
+      .uses_protocol = true,
+      .make = [](const SystemSetup& setup) { return std::make_unique<MatcherSystem>(setup); }};
 }
 
 }  // namespace vernier::sim::internal

@@ -11,7 +11,7 @@
 
 namespace vernier::sim::internal {
 
-/// A quantity that a system measures, over the trials in which it is known.
+/// A quantity that a system measures, over the answered trials in which it is known.
 struct MeasuredSummary {
   int trials = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
@@ -31,10 +31,12 @@ struct CellSummary {
   Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
   double coverage = 0;                    ///< fraction answered
   double success_when_answered = 0;
-  double best_guess_success = 0;         ///< where an unsure localiser's best guess counts too
-  int failed = 0;                        ///< trials in which the system itself failed
-  std::string why_failed;                ///< the first one's reason, where it is stored
-  double node_success = 0;               ///< for the map node instead of the refined pose
+  double best_guess_success = 0;  ///< where an unsure localiser's best guess counts too
+  int failed = 0;                 ///< trials in which the system itself failed
+  std::string why_failed;         ///< the first one's reason, where it is stored
+  int unsure = 0;           ///< trials of other systems than localisers that doubt their answer
+  std::string why_unsure;   ///< the first one's reason, if it says one
+  double node_success = 0;  ///< for the map node instead of the refined pose
   double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
   double median_error = 0;               ///< over answered trials, in the unit of the system
   double p95_error = 0;                  ///< the same

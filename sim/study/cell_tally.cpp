@@ -65,6 +65,10 @@ void CellTally::add(const TrialResult& t) {
     cell_.summary.why_failed = t.failure;
   }
   cell_.stated.add(t);
+  if (t.measured && t.status == LocalisationStatus::unsure && cell_.summary.unsure++ == 0) {
+    cell_.summary.why_unsure = t.failure;
+  }
+  if (!t.answered()) return;
   if (t.measured) {
     measured_.resize(t.measured->size());
     for (std::size_t i = 0; i < t.measured->size(); ++i) {
@@ -72,7 +76,6 @@ void CellTally::add(const TrialResult& t) {
       if (std::isfinite(value)) measured_[i].push_back(value);
     }
   }
-  if (!t.answered()) return;
   const double turn = std::abs(t.heading_error_rad);
   ++answered_;
   successes_ += t.success();

@@ -11,7 +11,7 @@
 namespace vernier::sim::internal {
 
 /// Takes a cell's trials block by block and makes its figures of them, so that the trials need not
-/// be kept: 24 bytes a trial are, and 8 for each quantity of another system,, until the end, for
+/// be kept: 24 bytes a trial are, and 8 for each quantity of another system, until the end, for
 /// the quantiles.
 class CellTally {
  public:

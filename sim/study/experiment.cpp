@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calib/base/thread_clock.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -25,7 +26,6 @@
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/study/reconstruct.h"
-#include "sim/study/trial_clock.h"
 #include "sim/told_rigs.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
@@ -34,6 +34,7 @@
 namespace vernier::sim {
 
 using namespace localise;
+using namespace vernier::internal;
 using namespace internal;
 
 namespace {
@@ -246,7 +247,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     std::vector<StereoCorner> corners =
         described(sighting, pose, draw, changed_ ? changed_appearance_.get() : appearance_.get());
 
-    const TrialClock clock;
+    const ThreadClock clock;
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
     looks.back().view.corners = std::move(corners);
     answer =

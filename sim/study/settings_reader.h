@@ -50,10 +50,11 @@ class SettingsReader : public vernier::internal::TomlReader {
     }
   }
 
- private:
-  void read_own_sources(const toml::table& table, SourceSettings& sources) const;
   /// A command line of a program.
   std::string command(const toml::node& node, const std::string& what) const;
+
+ private:
+  void read_own_sources(const toml::table& table, SourceSettings& sources) const;
   void read_camera(const toml::table& table, localise::CameraMount& mount) const;
   void read_map(const toml::table& table, ExperimentSettings& settings) const;
   void read_corners(const toml::table& table, AppearanceOptions& appearance) const;

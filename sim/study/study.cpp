@@ -172,7 +172,7 @@ void run_study(const Study& study, const StudyRun& run) {
     return;
   }
   check_processor(stored, run);
-  UnitComputer computer(study, work);
+  UnitComputer computer(study, work, run.stop);
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);

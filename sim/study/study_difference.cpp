@@ -13,6 +13,7 @@
 
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/told_settings.h"
 
 namespace vernier::sim::internal {
 
@@ -28,6 +29,10 @@ std::vector<std::string> differing_settings(const StudyCell& stored, const Study
       all.push_back(fmt::format("{} is {} there and {} here", key, value,
                                 other == wanted.settings.end() ? "not set" : other->second));
     }
+  }
+  for (const auto& [key, value] : wanted.settings) {
+    if (names_a_file(key) || stored.settings.contains(key)) continue;
+    all.push_back(fmt::format("{} is not set there and {} here", key, value));
   }
   return all;
 }

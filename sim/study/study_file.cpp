@@ -337,6 +337,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
                 "set world.visibility = \"exact\", or moved = 0");
   }
   check_program_is_asked(study);
+  check_options_are_used(study);
   return study;
 }
 
@@ -381,7 +382,7 @@ std::string swept_value(const StudyCell& cell, std::string_view key) {
 
 int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
 
-int independent_block_size(int trials) { return std::clamp(trials / 30, 1, 50); }
+int independent_block_size(int trials) { return std::clamp(trials / 30, 1, 10); }
 
 StudyFile parse_study(const std::string& text,
                       const std::string& place,

@@ -36,7 +36,7 @@ std::string swept_value(const StudyCell& cell, std::string_view key);
 /// least six maps, the minimum for an interval.
 int block_size(int trials);
 
-/// The same for systems whose trials share nothing: a thirtieth of the trials, 1 to 50.
+/// The same for systems whose trials share nothing: a thirtieth of the trials, 1 to 10.
 int independent_block_size(int trials);
 
 /// Content of a study file (docs/file-formats.md).

@@ -34,6 +34,7 @@
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
+#include "sim/study/system_kind.h"
 #include "sim/study/told_settings.h"
 #include "sim/told/fresh_calibrations.h"
 #include "sim/visibility.h"
@@ -187,9 +188,9 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
 }
 
 std::string cell_key(const Study& study, const StudyCell& cell) {
-  nlohmann::ordered_json key{{"results", results_version},
-                             {"world", world_fingerprint_of(study, cell)},
-                             {"rig", study.rig_fingerprint}};
+  nlohmann::ordered_json key{{"results", results_version}};
+  if (system_kind(cell.system.name).uses("world")) key["world"] = world_fingerprint_of(study, cell);
+  key["rig"] = study.rig_fingerprint;
   if (cell.visibility != VisibilityMethod::exact) key["world.visibility"] = "view_sets";
   if (!cell.told.truth.empty() && !cell.told.calibration) {
     key["told"] = study.told_rigs.at(cell.told.file).fingerprint;
@@ -210,9 +211,8 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   if (study.file.trials_per_block != usual_block) {
     key["study.trials_per_block"] = study.file.trials_per_block;
   }
-  if (const auto command = cell.system.options.find("command");
-      command != cell.system.options.end()) {
-    key[system_files] = fingerprint(files_named_in(command->second));
+  if (const std::string command = cell.system.command(); !command.empty()) {
+    key[system_files] = fingerprint(files_named_in(command));
   }
   if (const std::string& command = cell.experiment.sources.command; !command.empty()) {
     key[source_files] = fingerprint(files_named_in(command));

@@ -287,7 +287,7 @@ void take_part(const Study& study, int threads, Communicator& ranks, const std::
   if (std::holds_alternative<End>(answer)) return;
   const auto* welcome = std::get_if<Welcome>(&answer);
   if (!welcome) fail_unexpected("rank 0");
-  UnitComputer computer(study, work);
+  UnitComputer computer(study, work, stop);
   if (welcome->has_blocks) computer.prepare_maps();
   WorkerThreads own(computer, threads, stop);
   ranks.send(0, rank_text(Ready{own.threads()}));

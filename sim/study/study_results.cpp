@@ -75,7 +75,7 @@ std::vector<TrialResult> wanted_trials(StoredBlock block,
                 "delete the stores of the folder and run the study again");
   }
   const bool measures = !cell.system.is_localiser();
-  const std::size_t measured = cell.system.measured.size();
+  const std::size_t measured = cell.system.measured_names.size();
   if (std::any_of(block.trials.begin(), block.trials.end(), [&](const TrialResult& trial) {
         return trial.measured.has_value() != measures ||
                (measures && trial.measured->size() != measured);
@@ -128,8 +128,8 @@ std::vector<std::string> take_earlier_programs(const Study& study,
     const ExperimentSettings& settings = study.file.cells[i].experiment;
     if (!settings.sources.command.empty()) commands.insert(settings.sources.command);
     if (settings.method == "program") commands.insert(settings.localiser.command);
-    const SystemSettings& system = study.file.cells[i].system;
-    if (system.options.contains("command")) commands.insert(system.text("command"));
+    const std::string command = study.file.cells[i].system.command();
+    if (!command.empty()) commands.insert(command);
   }
   return {commands.begin(), commands.end()};
 }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/system_kind.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,6 +49,15 @@ int SystemSettings::whole(const std::string& option) const {
 
 const std::string& SystemSettings::text(const std::string& option) const {
   return options.at(option);
+}
+
+std::string SystemSettings::command() const {
+  const auto found = options.find("command");
+  return found == options.end() ? "" : found->second;
+}
+
+bool SystemKind::uses(std::string_view section) const {
+  return std::find(sections.begin(), sections.end(), section) != sections.end();
 }
 
 void register_system(SystemKind kind) {

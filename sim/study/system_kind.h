@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sim/experiment.h"
@@ -19,34 +21,38 @@ struct SystemSetup;
 /// A key of [system] that a kind of system has of its own.
 struct SystemOption {
   enum class Type {
-    number,  ///< `low` to `high`
-    whole,   ///< the same, without fraction
-    word,    ///< one of `words`
-    text,    ///< anything; needed where `usual` is empty
-    names,   ///< list of names of what a trial measures, each once; not swept
+    number,   ///< `low` to `high`
+    whole,    ///< the same, without fraction
+    word,     ///< one of `words`
+    text,     ///< anything
+    command,  ///< words of a command line
+    names,    ///< list of names of what a trial measures, each once; not swept
   };
 
   std::string name;
   Type type = Type::number;
-  std::string usual = {};  ///< default, as in SystemSettings
+  std::string usual = {};  ///< default, as in SystemSettings; empty: it must be given
   double low = 0, high = 0;
   std::vector<std::string> words = {};
-  bool optional = false;  ///< a text that may be left out, and is then empty
+  /// A word of another option with which alone this one counts: "matcher", "program".
+  std::pair<std::string, std::string> only_with = {};
 };
 
 /// What a study tries: the table [system] of its file.
 struct SystemSettings {
   std::string name = "localiser";
   double success_error = success_radius_m;        ///< an answer is right up to this error
-  std::map<std::string, std::string> options;     ///< all of its kind, as text
+  std::map<std::string, std::string> options;     ///< those of its kind that count, as text
   std::map<std::string, std::string> parameters;  ///< of [parameters], as JSON
-  std::vector<std::string> measured;              ///< names of TrialResult::measured
+  std::vector<std::string> measured_names;        ///< of TrialResult::measured
 
   bool is_localiser() const { return name == "localiser"; }
-  /// Of options; they are there for every cell of the kind.
+  /// Of options that count.
   double number(const std::string& option) const;
   int whole(const std::string& option) const;
   const std::string& text(const std::string& option) const;
+  /// The program that it runs; empty if it runs none.
+  std::string command() const;
 };
 
 /// Which of the sources of error act on a system.
@@ -70,6 +76,8 @@ struct SystemKind {
   bool tells_rigs = false;     ///< the estimator may be told another rig than the true one
   /// Null for localisers, which the engine runs itself, as their cells share maps.
   std::function<std::unique_ptr<SystemUnderTest>(const SystemSetup&)> make = {};
+
+  bool uses(std::string_view section) const;
 };
 
 /// Makes a kind known to studies, once at the start of a program; replaces one of the same name.

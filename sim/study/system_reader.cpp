@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/base/program_run.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
+#include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 
 namespace vernier::sim::internal {
@@ -29,9 +29,15 @@ bool has(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
+/// Whether an option has an effect beside the others.
+bool counts(const SystemOption& option, const SystemSettings& settings) {
+  const auto& [other, word] = option.only_with;
+  return other.empty() || settings.text(other) == word;
+}
+
 /// Columns of a trial that every system has.
-const std::vector<std::string> own_columns{"cell",    "block", "trial",  "status", "answered",
-                                           "success", "error", "cpu_ms", "wall_ms"};
+const std::vector<std::string> own_columns{"cell",    "block", "trial",  "status",  "answered",
+                                           "success", "error", "cpu_ms", "wall_ms", "reason"};
 
 /// Names of columns of results: small letters, digits and underscores, a letter first.
 bool is_name(const std::string& text) {
@@ -40,6 +46,16 @@ bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= longest && is_letter(text[0]) &&
          std::all_of(text.begin(), text.end(),
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+/// A text without its quotes, unless it would be taken for a number, a boolean or a quoted text.
+std::string shown_parameter(const std::string& json) {
+  const nlohmann::json value = nlohmann::json::parse(json);
+  if (!value.is_string()) return json;
+  const std::string text = value.get<std::string>();
+  const bool is_plain = text != "true" && text != "false" && !text.starts_with('"') &&
+                        text.find_first_not_of("+-.0123456789eE") != std::string::npos;
+  return is_plain ? text : json;
 }
 
 }  // namespace
@@ -57,31 +73,18 @@ const SystemKind& SystemReader::kind_of(const toml::table& root) const {
   return system_kind(name);
 }
 
-std::string SystemReader::number_text(const toml::node& node, const SystemOption& option) const {
-  const std::string what = "system." + option.name;
-  const double value =
-      option.type == Type::whole ? static_cast<double>(integer(node, what)) : number(node, what);
-  if (!(value >= option.low && value <= option.high)) {
-    fail(node, fmt::format("{} = {} is out of range", what, value),
-         fmt::format("use {} to {}", option.low, option.high));
-  }
-  return fmt::format("{}", value);
-}
-
 std::string SystemReader::value_of(const toml::node& node, const SystemOption& option) const {
-  if (option.type == Type::number || option.type == Type::whole) return number_text(node, option);
   const std::string what = "system." + option.name;
+  if (option.type == Type::whole) integer(node, what);  // refuses a fraction
+  if (option.type == Type::number || option.type == Type::whole) {
+    return fmt::format("{}", number_in(node, what, option.low, option.high));
+  }
+  if (option.type == Type::command) return command(node, what);
   const std::string said = text(node, what);
   if (option.type == Type::word && !has(option.words, said)) {
     fail(node, what + " is " + in_quotes(said), "use " + alternatives(option.words));
   }
   if (said.empty()) fail(node, what + " is empty", "give it, or leave the key out");
-  if (option.name != "command") return said;
-  try {
-    command_words(said, what);
-  } catch (const Error& error) {
-    fail(node, what + " has an " + error.fault(), error.remedy());
-  }
   return said;
 }
 
@@ -93,11 +96,11 @@ void SystemReader::read_names(const toml::node& node, SystemSettings& settings) 
       fail(value, in_quotes(name) + " is no name of what is measured",
            "use small letters, digits and underscores, and none of " + alternatives(own_columns));
     }
-    if (has(settings.measured, name)) {
+    if (has(settings.measured_names, name)) {
       fail(value, "system.measured lists " + in_quotes(name) + " twice", "remove one");
     }
-    settings.measured.push_back(name);
-    if (settings.measured.size() > most) {
+    settings.measured_names.push_back(name);
+    if (settings.measured_names.size() > most) {
       fail(value, fmt::format("system.measured has more than {} names", most), "name fewer");
     }
   }
@@ -125,9 +128,15 @@ void SystemReader::read_options(const toml::table& section,
       if (node) read_names(*node, settings);
     } else if (node) {
       settings.options[option.name] = value_of(*node, option);
-    } else if (!option.usual.empty() || option.optional) {
-      settings.options[option.name] = option.usual;
     } else {
+      settings.options[option.name] = option.usual;
+    }
+  }
+  for (const SystemOption& option : kind.options) {  // now that it is known which of them count
+    if (option.type == Type::names) continue;
+    if (!counts(option, settings)) {
+      settings.options.erase(option.name);
+    } else if (settings.text(option.name).empty()) {
       required(section, option.name.c_str(), "[system]");
     }
   }
@@ -168,7 +177,7 @@ void SystemReader::check_use(const toml::table& root, const SystemKind& kind) co
   const std::vector<std::string> always{"study", "system", "rig", "sweep", "tune"};
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
-    if (has(always, name) || has(kind.sections, name)) continue;
+    if (has(always, name) || kind.uses(name)) continue;
     fail(node, fmt::format("[{}] has no effect on {}", name, kind.noun), "remove it");
   }
   if (!kind.uses_protocol) refuse(root, "study", "protocol", kind);
@@ -193,7 +202,7 @@ SystemSettings SystemReader::read(const toml::table& root) const {
   SystemSettings settings;
   settings.name = kind.name;
   settings.success_error = kind.success_error;
-  settings.measured = kind.measured;
+  settings.measured_names = kind.measured;
   const toml::table empty;
   const toml::table* section = root.get_as<toml::table>("system");
   read_options(section ? *section : empty, kind, settings);
@@ -215,6 +224,24 @@ void SystemReader::check_sweep_key(const toml::table& root,
        "make a study for each");
 }
 
+void check_options_are_used(const StudyFile& study) {
+  for (const SystemOption& option : system_of(study).options) {
+    const std::string key = "system." + option.name;
+    const auto uses = [&](const StudyCell& cell) {
+      return cell.system.options.contains(option.name);
+    };
+    if (option.type == Type::names || study.lines.count(key) == 0 ||
+        std::any_of(study.cells.begin(), study.cells.end(), uses)) {
+      continue;
+    }
+    const auto& [other, word] = option.only_with;
+    throw Error(
+        place_of(study, key),
+        fmt::format("{} is set, but no system.{} is \"{}\", so it is not used", key, other, word),
+        fmt::format("set {} = \"{}\", or leave it out", other, word));
+  }
+}
+
 std::map<std::string, std::string> settings_of(const SystemSettings& system) {
   std::map<std::string, std::string> all;
   if (system.is_localiser()) return all;
@@ -222,11 +249,10 @@ std::map<std::string, std::string> settings_of(const SystemSettings& system) {
   all["system.success_error"] = fmt::format("{}", system.success_error);
   for (const auto& [name, value] : system.options) all["system." + name] = value;
   for (const auto& [name, value] : system.parameters) {
-    const nlohmann::json json = nlohmann::json::parse(value);
-    all["parameters." + name] = json.is_string() ? json.get<std::string>() : value;
+    all["parameters." + name] = shown_parameter(value);
   }
-  if (system_kind(system.name).measured.size() == system.measured.size()) return all;
-  for (const std::string& name : system.measured) {
+  if (system_kind(system.name).measured.size() == system.measured_names.size()) return all;
+  for (const std::string& name : system.measured_names) {
     std::string& names = all["system.measured"];
     names += (names.empty() ? "" : ", ") + name;
   }
@@ -240,7 +266,7 @@ bool uses_setting(const SystemKind& kind, const std::string& key) {
   if (section == "sources" && kind.sources == SourcesUsed::calibration) {
     return key == "sources.calibration";
   }
-  return has(kind.sections, section);
+  return kind.uses(section);
 }
 
 }  // namespace vernier::sim::internal

@@ -7,15 +7,16 @@
 #include <map>
 #include <string>
 
-#include "calib/base/toml_reader.h"
+#include "sim/study/settings_reader.h"
+#include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 
 namespace vernier::sim::internal {
 
 /// Reads [system] and [parameters] of a study.
-class SystemReader : public vernier::internal::TomlReader {
+class SystemReader : public SettingsReader {
  public:
-  using TomlReader::TomlReader;
+  using SettingsReader::SettingsReader;
 
   /// Throws Error for an unknown system or option, a value out of its range, and a table or key of
   /// the study that the system does not use.
@@ -27,7 +28,6 @@ class SystemReader : public vernier::internal::TomlReader {
  private:
   const SystemKind& kind_of(const toml::table& root) const;
   std::string value_of(const toml::node& node, const SystemOption& option) const;
-  std::string number_text(const toml::node& node, const SystemOption& option) const;
   void read_options(const toml::table& section,
                     const SystemKind& kind,
                     SystemSettings& settings) const;
@@ -39,6 +39,10 @@ class SystemReader : public vernier::internal::TomlReader {
               const char* key,
               const SystemKind& kind) const;
 };
+
+/// Throws Error for an option that no cell of the study uses, as a command where no matcher is a
+/// program.
+void check_options_are_used(const StudyFile& study);
 
 /// The system's settings by dotted key; none of a localiser's.
 std::map<std::string, std::string> settings_of(const SystemSettings& system);

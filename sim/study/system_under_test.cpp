@@ -37,7 +37,7 @@ TrialResult failed_trial(const SystemSettings& system, std::uint32_t trial, std:
   failed.status = localise::LocalisationStatus::failed;
   failed.error = failed.node_error_m = failed.heading_error_rad = unknown;
   failed.limit = system.success_error;
-  failed.measured.emplace(system.measured.size(), unknown);
+  failed.measured.emplace(system.measured_names.size(), unknown);
   failed.failure = std::move(why);
   return failed;
 }

@@ -9,6 +9,7 @@
 
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/moved_furniture.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/told/fresh_calibrations.h"
@@ -20,8 +21,10 @@ namespace vernier::sim::internal {
 /// What the trials of a cell are made from. The references outlive the system.
 struct SystemSetup {
   const StudyCell& cell;
-  const Visibility& visibility;                                     ///< of the cell's world
-  const RigEstimate& rig;                                           ///< the true one
+  const Visibility& visibility;  ///< of the cell's world, before furniture moves
+  const RigEstimate& rig;        ///< the true one
+  /// The world as it is with sources.moved; null if nothing moves.
+  std::shared_ptr<const ChangedWorld> changed = nullptr;
   std::shared_ptr<const QueryPlaces> places = nullptr;              ///< of the protocol, if used
   std::shared_ptr<const ToldRigs> told = nullptr;                   ///< null: draws around the true
   std::shared_ptr<const FreshCalibrations> calibrations = nullptr;  ///< of [calibration], or null
@@ -31,7 +34,8 @@ struct SystemSetup {
 class SystemUnderTest {
  public:
   virtual ~SystemUnderTest() = default;
-  /// A trial, which depends on the cell and the number of the trial only.
+  /// A trial, which depends on the cell and the number of the trial only. One that fails before the
+  /// system is asked, as for a rig that is not told, has no time.
   virtual TrialResult run(std::uint32_t trial) = 0;
 };
 

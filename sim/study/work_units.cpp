@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -56,11 +57,15 @@ std::vector<WorkUnit> query_units(const MissingWork& missing) {
   return units;
 }
 
-UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
+UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std::stop_token& stop)
     : study_(study), work_(work), scenes_(study) {
+  try_program(stop);
+  std::set<std::string> commands;  // each program is started once
   for (const StudyCell& cell : study.file.cells) {
     if (!cell.system.is_localiser()) {
-      with_errors_of(place_of(study.file, "system.name"), [&] { return system(cell); });
+      const std::string command = cell.system.command();
+      if (stop.stop_requested()) return;
+      if (command.empty() || commands.insert(command).second) system(cell);
       continue;
     }
     StudyCell still = cell;
@@ -69,24 +74,29 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
                                        still.experiment, scenes_.queries(still).places, nullptr,
                                        scenes_.told(cell));
   }
-  try_program();
 }
 
-void UnitComputer::try_program() const {
-  const StudyCell& cell = study_.file.cells[0];
-  const auto command = cell.system.options.find("command");
-  if (command == cell.system.options.end() || command->second.empty()) return;
-  constexpr std::uint32_t tried = 3;
-  const std::unique_ptr<SystemUnderTest> asked = system(cell);
+void UnitComputer::try_program(const std::stop_token& stop) const {
+  const auto asks = [](const StudyCell& cell) { return !cell.system.command().empty(); };
+  const auto& cells = study_.file.cells;
+  const auto cell = std::find_if(cells.begin(), cells.end(), asks);
+  if (cell == cells.end()) return;
+  constexpr int most_failures = 3;
+  constexpr std::uint32_t most_trials = 30;
+  const Lease asked = system(*cell);
   std::string why;
-  for (std::uint32_t trial = 0; trial < tried; ++trial) {
+  int failures = 0;
+  for (std::uint32_t trial = 0; trial < most_trials && failures < most_failures; ++trial) {
+    if (stop.stop_requested()) return;
     const TrialResult result = asked->run(trial);
     if (result.status != localise::LocalisationStatus::failed) return;
-    if (why.empty()) why = result.failure;
+    if (result.wall_ms == 0) continue;  // the program was not asked
+    if (failures++ == 0) why = result.failure;
   }
+  if (failures < most_failures) return;
   throw Error(place_of(study_.file, "system.command"),
-              fmt::format("the program failed in the first {} trials: {}", tried, why),
-              "run it by hand with a question of docs/systems.md");
+              fmt::format("the program failed in the first {} trials: {}", failures, why),
+              "run it by hand (docs/systems.md)");
 }
 
 void UnitComputer::prepare_maps() {
@@ -113,7 +123,7 @@ BlockRow UnitComputer::block(const BlockJob& job) const {
   return block_row(work_.cell_keys[static_cast<std::size_t>(job.cell)], job.block,
                    with_errors_of(cell.world, [&] {
                      return cell.system.is_localiser() ? localisations(cell, trials)
-                                                       : run_block(*system(cell), trials);
+                                                       : trials_of_system(job.cell, trials);
                    }));
 }
 
@@ -126,14 +136,54 @@ std::vector<TrialResult> UnitComputer::localisations(const StudyCell& cell,
   return experiment.run_block(trials);
 }
 
-std::unique_ptr<SystemUnderTest> UnitComputer::system(const StudyCell& cell) const {
+UnitComputer::Lease UnitComputer::system(const StudyCell& cell) const {
   const SystemKind& kind = system_kind(cell.system.name);
-  return kind.make({.cell = cell,
-                    .visibility = scenes_.visibility(cell),
-                    .rig = study_.rig,
-                    .places = kind.uses_protocol ? scenes_.queries(cell).places : nullptr,
-                    .told = scenes_.told(cell),
-                    .calibrations = scenes_.calibrations(cell)});
+  const bool moves = kind.sources == SourcesUsed::all && cell.experiment.sources.moved > 0;
+  const QueryWorld world = kind.uses_protocol || moves ? scenes_.queries(cell) : QueryWorld{};
+  try {
+    return kind.make({.cell = cell,
+                      .visibility = scenes_.visibility(cell),
+                      .rig = study_.rig,
+                      .changed = world.changed,
+                      .places = world.places,
+                      .told = scenes_.told(cell),
+                      .calibrations = scenes_.calibrations(cell)});
+  } catch (const Error& error) {  // at the line of the key that it names
+    const bool has_key = error.place().starts_with("system.");
+    const std::string key = error.place().substr(0, error.place().find(':'));
+    throw error_of(place_of(study_.file, has_key ? key : "system.name"), error);
+  }
+}
+
+UnitComputer::Lease UnitComputer::lease(int cell) const {
+  {
+    const std::lock_guard lock(idle_mutex_);
+    const auto found = std::find_if(idle_.begin(), idle_.end(),
+                                    [&](const auto& idle) { return idle.first == cell; });
+    if (found != idle_.end()) {
+      Lease system = std::move(found->second);
+      idle_.erase(found);
+      return system;
+    }
+  }
+  return system(study_.file.cells[static_cast<std::size_t>(cell)]);
+}
+
+void UnitComputer::give_back(int cell, Lease system) const {
+  constexpr std::size_t most = 32;
+  Lease oldest;  // ended without the lock
+  const std::lock_guard lock(idle_mutex_);
+  idle_.emplace_back(cell, std::move(system));
+  if (idle_.size() <= most) return;
+  oldest = std::move(idle_.front().second);
+  idle_.pop_front();
+}
+
+std::vector<TrialResult> UnitComputer::trials_of_system(int cell, const TrialBlock& trials) const {
+  Lease leased = lease(cell);
+  std::vector<TrialResult> results = run_block(*leased, trials);
+  give_back(cell, std::move(leased));
+  return results;
 }
 
 std::shared_ptr<const AliasFinder> UnitComputer::finder(int ceiling) const {

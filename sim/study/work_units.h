@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -47,7 +48,7 @@ class UnitComputer {
  public:
   /// Keeps references to the study and its work. Throws Error if a cell cannot be run, or a program
   /// under test cannot.
-  UnitComputer(const Study& study, const StudyWork& work);
+  UnitComputer(const Study& study, const StudyWork& work, const std::stop_token& stop = {});
 
   /// What cells share.
   StudyScenes& scenes() { return scenes_; }
@@ -61,10 +62,16 @@ class UnitComputer {
  private:
   BlockRow block(const BlockJob& job) const;
   std::vector<TrialResult> localisations(const StudyCell& cell, const TrialBlock& trials) const;
-  std::unique_ptr<SystemUnderTest> system(const StudyCell& cell) const;
-  /// Throws Error if a program of the first cell fails in its first three trials, before hours are
-  /// spent on it.
-  void try_program() const;
+  using Lease = std::unique_ptr<SystemUnderTest>;
+  /// Throws Error at the line of the study that it is about.
+  Lease system(const StudyCell& cell) const;
+  /// One that nobody uses, or a new one: the programs and scenes of a cell serve many blocks.
+  Lease lease(int cell) const;
+  void give_back(int cell, Lease system) const;
+  std::vector<TrialResult> trials_of_system(int cell, const TrialBlock& trials) const;
+  /// Throws Error if the first program that is asked fails in its first three trials, before hours
+  /// are spent on it.
+  void try_program(const std::stop_token& stop) const;
   std::vector<std::pair<int, QueryCeiling>> queries(const WorkUnit& unit,
                                                     const std::stop_token& stop) const;
   /// Of the ceiling asked for last, kept.
@@ -77,6 +84,8 @@ class UnitComputer {
   mutable std::mutex finder_mutex_;
   mutable std::shared_ptr<const AliasFinder> finder_;
   mutable int finder_ceiling_ = -1;
+  mutable std::mutex idle_mutex_;
+  mutable std::deque<std::pair<int, Lease>> idle_;  // by cell, the oldest first
 };
 
 }  // namespace vernier::sim::internal

@@ -3,6 +3,7 @@
 #include "sim/systems/program_system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,9 +14,11 @@
 #include <vector>
 
 #include "calib/base/answering_program.h"
+#include "calib/base/error_place.h"
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
+#include "calib/base/thread_clock.h"
 #include "calib/error.h"
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
@@ -24,7 +27,6 @@
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
-#include "sim/study/trial_clock.h"
 #include "sim/told_rigs.h"
 
 namespace vernier::sim::internal {
@@ -44,16 +46,27 @@ std::string hello_line(const StudyCell& cell) {
   for (const auto& [name, value] : cell.system.parameters) parameters[name] = Json::parse(value);
   const Json hello{{"vernier_system", system_protocol},
                    {"parameters", parameters},
-                   {"measured", cell.system.measured},
+                   {"measured", cell.system.measured_names},
                    {"seed", cell.experiment.seed}};
   return hello.dump() + "\n";
 }
 
-AnsweringProgram started(const StudyCell& cell) {
+std::unique_ptr<AnsweringProgram> started(const StudyCell& cell) {
   const double limit_s = cell.system.number("time_limit_s");
-  return {command_words(cell.system.text("command"), "system.command"),
-          {[&cell] { return hello_line(cell); }, "the parameters", ready_s + limit_s},
-          limit_s};
+  std::vector<std::string> words = command_words(cell.system.text("command"), "system.command");
+  const ProgramStart start{[&cell] { return hello_line(cell); }, "the parameters",
+                           ready_s + limit_s};
+  return with_errors_of("system.command", [&] {
+    return std::make_unique<AnsweringProgram>(std::move(words), start, limit_s);
+  });
+}
+
+/// A number whose square is one.
+double bounded_number(const JsonNode& node) {
+  constexpr double most = 1e150;
+  const double value = node.number();
+  if (!(std::abs(value) <= most)) throw Error(node.place(), "is beyond 1e150", "use another unit");
+  return value;
 }
 
 /// True unless the program says that it has no answer.
@@ -77,16 +90,17 @@ class ProgramSystem : public SystemUnderTest {
     const ToldRig told = told_ ? told_->told(trial) : ToldRig{truth_, {}};
     TrialResult result = failed_trial(cell_.system, trial, told.failure);
     if (!told.failure.empty()) return result;
-    const double cpu_s = program_.cpu_s();
-    const TrialClock clock;
+    const double cpu_s = program_->cpu_s();
+    const ThreadClock clock;
     const auto question = [&] { return question_line(trial, told.rig); };
     const auto take = [&](std::string_view line) {
       parse_system_answer(line, cell_.system, result);
     };
-    if (program_.ask(question, take)) {
-      result.cpu_ms = 1e3 * std::max(0.0, program_.cpu_s() - cpu_s);
+    if (program_->ask(question, take)) {
+      result.cpu_ms = 1e3 * std::max(0.0, program_->cpu_s() - cpu_s);
     } else {
-      result = failed_trial(cell_.system, trial, program_.failure());
+      result = failed_trial(cell_.system, trial, program_->failure());
+      program_ = started(cell_);  // it is never left alone: trials know nothing of each other
     }
     result.wall_ms = clock.wall_ms();
     return result;
@@ -105,7 +119,7 @@ class ProgramSystem : public SystemUnderTest {
   const Rig& truth_;
   Json true_rig_;
   std::shared_ptr<const ToldRigs> told_;
-  AnsweringProgram program_;
+  std::unique_ptr<AnsweringProgram> program_;
 };
 
 }  // namespace
@@ -116,16 +130,16 @@ void parse_system_answer(std::string_view line, const SystemSettings& system, Tr
   const bool answered = has_answered(node);
   trial.status = answered ? LocalisationStatus::answered : LocalisationStatus::unsure;
   if (answered || node.has("error")) {
-    trial.error = node.at("error").number();
+    trial.error = bounded_number(node.at("error"));
     if (!(trial.error >= 0)) {
       throw Error(node.at("error").place(), "is negative", "give its size");
     }
   }
-  trial.measured.emplace(system.measured.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < system.measured.size(); ++i) {
-    const std::string& name = system.measured[i];
+  trial.measured.emplace(system.measured_names.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
+    const std::string& name = system.measured_names[i];
     if (node.has(name) && !node.at(name).json().is_null()) {
-      (*trial.measured)[i] = node.at(name).number();
+      (*trial.measured)[i] = bounded_number(node.at(name));
     }
   }
 }
@@ -137,7 +151,7 @@ SystemKind program_kind() {
           .error_name = "error",
           .error_title = "error",
           .unit = "",
-          .options = {{.name = "command", .type = Type::text},
+          .options = {{.name = "command", .type = Type::command},
                       {.name = "time_limit_s", .usual = "60", .low = 1e-3, .high = 86400},
                       {.name = "measured", .type = Type::names}},
           .sections = {"sources", "calibration", "parameters"},

@@ -6,16 +6,18 @@
 #include <memory>
 #include <utility>
 
+#include "calib/base/thread_clock.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
+#include "sim/moved_furniture.h"
 #include "sim/robot.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
-#include "sim/study/trial_clock.h"
 #include "sim/visual_servo.h"
 
 namespace vernier::sim::internal {
 
+using namespace vernier::internal;
 using localise::LocalisationStatus;
 
 namespace {
@@ -37,6 +39,7 @@ LocalisationStatus status_of(ServoStatus status) {
 RobotOptions robot_of(const ExperimentSettings& settings) {
   RobotOptions robot;
   robot.sources = settings.sources;
+  robot.sources.moved = 0;  // in the world
   robot.mount = settings.mount;
   return robot;
 }
@@ -56,13 +59,14 @@ class ServoSystem : public SystemUnderTest {
   explicit ServoSystem(const SystemSetup& setup)
       : settings_(setup.cell.system),
         seed_(setup.cell.experiment.seed),
-        servo_(setup.visibility,
+        changed_(setup.changed),
+        servo_(changed_ ? changed_->visibility : setup.visibility,
                setup.rig,
                robot_of(setup.cell.experiment),
                servo_of(setup.cell.system)) {}
 
   TrialResult run(std::uint32_t trial) override {
-    const TrialClock clock;
+    const ThreadClock clock;
     const ServoTrial drive = servo_.run(seed_, trial);
     const double cpu_ms = clock.cpu_ms(), wall_ms = clock.wall_ms();
     TrialResult result = failed_trial(settings_, trial, drive.failure);
@@ -90,6 +94,7 @@ class ServoSystem : public SystemUnderTest {
  private:
   const SystemSettings& settings_;
   std::uint64_t seed_;
+  std::shared_ptr<const ChangedWorld> changed_;
   ServoExperiment servo_;
 };
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/thread_clock.h"
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
 #include "calib/camera.h"
@@ -133,7 +134,11 @@ std::shared_ptr<const FreshCalibration> FreshCalibrations::of(std::uint32_t draw
     const std::lock_guard lock(mutex_);
     if (const auto found = known_.find(draw); found != known_.end()) return found->second;
   }
-  auto computed = std::make_shared<const FreshCalibration>(compute(draw));
+  const ThreadClock clock;
+  FreshCalibration made = compute(draw);
+  made.cpu_ms = clock.cpu_ms();
+  made.wall_ms = clock.wall_ms();
+  auto computed = std::make_shared<const FreshCalibration>(std::move(made));
   const std::lock_guard lock(mutex_);
   const auto [kept, is_new] = known_.emplace(draw, std::move(computed));
   std::shared_ptr<const FreshCalibration> result = kept->second;

@@ -36,9 +36,10 @@ struct FreshCalibrationOptions {
 /// One calibration. With a failure there is nothing else; a doubtful one is used all the same.
 struct FreshCalibration {
   Rig rig;
-  Eigen::MatrixXd covariance;  ///< the honest one, as stated by the calibration
-  std::string failure;         ///< what calibrate() threw
-  std::string doubt;           ///< its first trust warning
+  Eigen::MatrixXd covariance;      ///< the honest one, as stated by the calibration
+  std::string failure;             ///< what calibrate() threw
+  std::string doubt;               ///< its first trust warning
+  double cpu_ms = 0, wall_ms = 0;  ///< that it took, with the simulation of its views
 };
 
 /// Calibrations of one rig, each from other views of a board, by calibrate() with its checks and

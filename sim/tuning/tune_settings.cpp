@@ -74,8 +74,7 @@ class TuneReader : private SettingsReader {
     if (const auto* node = root.get("one_at_a_time")) {
       fail(*node, "a race is run over a [sweep]", "leave [one_at_a_time] out");
     }
-    const std::vector<std::string>& used = system_of(study_).sections;
-    if (std::find(used.begin(), used.end(), "world") == used.end()) {
+    if (!system_of(study_).uses("world")) {
       fail(*root.get("tune"),
            fmt::format("a race confirms on other worlds, and {} has none", system_of(study_).noun),
            "compare its cells by vernier study");

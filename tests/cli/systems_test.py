@@ -172,9 +172,16 @@ class Systems(unittest.TestCase):
         self.refused(calibrations.replace('range_m', 'range'), "did you mean 'range_m'")
         self.refused(calibrations.replace('"calibration"', '"calibrator"'), 'unknown system')
         self.refused(EXAMPLES['program'].replace('success_error = 0.05\n', ''), 'success_error')
-        self.refused(EXAMPLES['servoing'].replace('[sweep]', '[sources]\nmoved = 0.1\n[sweep]'), 'moved')
+        self.refused(EXAMPLES['program'].replace('python3 own_system.py', 'no-such-program'),
+                     'study.toml:6', 'no-such-program')
         self.refused(EXAMPLES['servoing'].replace('"model"', '"model"\ndoor = "portcullis"'),
                      'study.toml', 'portcullis')
+
+    def test_doubted_calibrations_say_why(self):
+        text = shorter('calibrations', 12).replace('[5, 10, 20]', '[3]').replace('0.2', '3')
+        done = self.run_study(text, code=3)
+        self.assertRegex(done.stderr, 'a calibration (is doubtful|failed) in .* the first by: ')
+        self.assertTrue(any(row['reason'] for row in self.rows('--trials')))
 
     def test_races(self):
         tune = '[tune]\nconfirm_worlds = ["hall"]\n'

@@ -62,7 +62,8 @@ TEST(MatcherSystem, ScoresWhatIsNotRightOfTheEdgesOfAPair) {
 }
 
 TEST(MatcherSystem, SeesTheSameEdgesThroughMoreNoise) {
-  const StudyFile study = matcher_study("[sweep]\n\"system.read_noise_e\" = [1, 400]\n");
+  const StudyFile study =
+      matcher_study("matcher = \"bm\"\n[sweep]\n\"system.read_noise_e\" = [1, 400]\n");
   double quiet = 0, noisy = 0;
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
     const TrialResult a = matcher_of_cell(study.cells[0])->run(trial);
@@ -85,16 +86,19 @@ TEST(MatcherSystem, ATrialOfAProgramThatFailsSaysWhy) {
 }
 
 TEST(MatcherSystem, ACommandIsOfAProgram) {
-  const StudyFile without = matcher_study("matcher = \"program\"\n");
-  EXPECT_NE(test::error_message([&] {
-              matcher_of_cell(without.cells[0]);
-            }).find("system.command: is missing"),
+  const auto complaint = [](const std::string& options) {
+    return test::error_message([&] { matcher_study(options); });
+  };
+  EXPECT_NE(complaint("matcher = \"program\"\n").find("'command'"), std::string::npos);
+  EXPECT_NE(complaint("command = \"m {left} {right} {output}\"\n")
+                .find("s.toml:8: system.command is set, but no system.matcher is \"program\""),
             std::string::npos);
-  const StudyFile with = matcher_study("command = \"m {left} {right} {output}\"\n");
-  EXPECT_NE(test::error_message([&] {
-              matcher_of_cell(with.cells[0]);
-            }).find("system.matcher is no program"),
-            std::string::npos);
+  // Beside a built-in matcher it counts for the program's cell only.
+  const StudyFile both = matcher_study(
+      "command = \"m {left} {right} {output}\"\n[sweep]\n"
+      "\"system.matcher\" = [\"edge\", \"program\"]\n");
+  EXPECT_EQ(both.cells[0].settings.count("system.command"), 0U);
+  EXPECT_EQ(both.cells[1].settings.count("system.command"), 1U);
 }
 
 }  // namespace

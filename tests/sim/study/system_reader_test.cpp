@@ -68,6 +68,27 @@ TEST(SystemReader, ParametersKeepTheirTypesAndAreSwept) {
   EXPECT_EQ(study.cells[0].settings.at("system.measured"), "a, b_m");
 }
 
+// What a program is told must differ where the settings do: they are the keys of stored results.
+TEST(SystemReader, ATextIsNoNumberAndNoBoolean) {
+  register_systems();
+  const auto shown = [](const std::string& value) {
+    const StudyFile study = parse_study(
+        "[study]\n[system]\nname = \"program\"\ncommand = \"./p\"\nsuccess_error = 1\n"
+        "[parameters]\na = " +
+            value + "\n",
+        "s.toml");
+    return study.cells[0].settings.at("parameters.a");
+  };
+  EXPECT_EQ(shown("1"), "1");
+  EXPECT_EQ(shown("\"1\""), "\"1\"");
+  EXPECT_EQ(shown("true"), "true");
+  EXPECT_EQ(shown("\"true\""), "\"true\"");
+  EXPECT_EQ(shown("1e300"), "1e+300");
+  EXPECT_EQ(shown("\"1e+300\""), "\"1e+300\"");
+  EXPECT_EQ(shown("'\"1\"'"), R"("\"1\"")");
+  EXPECT_EQ(shown("\"fast\""), "fast");
+}
+
 TEST(SystemReader, RefusesWhatIsNone) {
   expect_complaint("[system]\n", "'name'");
   expect_complaint("[system]\nname = \"calibrations\"\n", "s.toml:4: unknown system");
@@ -86,6 +107,8 @@ TEST(SystemReader, RefusesWhatIsNone) {
                    "s.toml:5: system.command has an");
   const std::string program =
       "[system]\nname = \"program\"\ncommand = \"./p\"\nsuccess_error = 1\n";
+  expect_complaint("[system]\nname = \"program\"\ncommand = \" \"\nsuccess_error = 1\n",
+                   "s.toml:5: system.command is empty");
   expect_complaint(program + "measured = [\"a\", \"a\"]\n", "twice");
   expect_complaint(program + "measured = [\"error\"]\n", "is no name of what is measured");
   expect_complaint(program + "measured = [\"Über\"]\n", "is no name of what is measured");

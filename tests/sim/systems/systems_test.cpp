@@ -24,6 +24,7 @@
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
+#include "sim/study/study_difference.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
@@ -256,10 +257,47 @@ TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
   EXPECT_EQ(summary.measured.at(0).trials, 0);  // it never said
 }
 
+// Whatever failed before, and in whichever block it is.
+TEST(Systems, ATrialOfAProgramKnowsNothingOfOthers) {
+  const test::TestFolder folder("systems");
+  std::ofstream(folder / "p.py") << "import json, sys\n"
+                                    "json.loads(sys.stdin.readline())\n"
+                                    "print('{\"ready\": true}', flush=True)\n"
+                                    "for line in sys.stdin:\n"
+                                    "  t = json.loads(line)['trial']\n"
+                                    "  print('{\"error\": 0.01}' if t < 4 or t > 7 else 'none',"
+                                    " flush=True)\n";
+  const Study study = system_study(program_study("python3 '" + (folder / "p.py").string() + "'"));
+  const auto system = system_of_cell(study);
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    EXPECT_EQ(system->run(trial).answered(), trial < 4 || trial > 7) << trial;
+  }
+}
+
+TEST(Systems, FurnitureMovesBeforeARobotDrives) {
+  const Study study = system_study(
+      "[study]\ntrials = 4\n[system]\nname = \"servoing\"\n[sweep]\n"
+      "\"sources.moved\" = [0, 0.5]\n");
+  const test::TestFolder folder("systems");
+  run_study(study, {folder / "a", 2, {}, {}, {}});
+  const StudyResults results = study_results(study, folder / "a");
+  EXPECT_EQ(results.cells[0].summary.failed, 0);
+  EXPECT_EQ(results.cells[1].summary.failed, 0);
+  EXPECT_NE(words({.cells = {results.cells[0]}}), words({.cells = {results.cells[1]}}));
+}
+
+TEST(Systems, AFinishedStudyIsNotGivenOtherParameters) {
+  const Study stored = system_study(program_study("./p"));
+  const Study more = system_study(program_study("./p", "mode = \"fast\"\n"));
+  EXPECT_EQ(study_difference(stored, stored), "");
+  EXPECT_EQ(study_difference(stored, more), "parameters.mode is not set there and fast here");
+  EXPECT_EQ(study_difference(more, stored), "parameters.mode is fast there and not set here");
+}
+
 std::string answer_complaint(const std::string& line) {
   SystemSettings system;
   system.name = "program";
-  system.measured = {"off_m"};
+  system.measured_names = {"off_m"};
   TrialResult trial;
   return test::error_message([&] { parse_system_answer(line, system, trial); });
 }
@@ -269,7 +307,7 @@ TEST(Systems, AnAnswerOfAProgramIsChecked) {
   EXPECT_EQ(answer_complaint(R"({"answered": false})"), "");
   for (const char* line : {R"({"error": -0.5})", R"({"error": "0.5"})", R"({})", "[]", "nonsense",
                            R"({"error": 0.5, "off_m": "far"})", R"({"answered": 1, "error": 0.5})",
-                           R"({"error": 1e999})"}) {
+                           R"({"error": 1e999})", R"({"error": 0, "off_m": -1e200})"}) {
     EXPECT_NE(answer_complaint(line), "") << line;
   }
 }

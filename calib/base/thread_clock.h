@@ -4,10 +4,10 @@
 
 #include <time.h>
 
-namespace vernier::sim::internal {
+namespace vernier::internal {
 
 /// CPU time of this thread, and time, milliseconds, since it was made. For one thread.
-class TrialClock {
+class ThreadClock {
  public:
   double cpu_ms() const { return now_ms(CLOCK_THREAD_CPUTIME_ID) - cpu_ms_; }
   double wall_ms() const { return now_ms(CLOCK_MONOTONIC) - wall_ms_; }
@@ -22,4 +22,4 @@ class TrialClock {
   double cpu_ms_ = now_ms(CLOCK_THREAD_CPUTIME_ID), wall_ms_ = now_ms(CLOCK_MONOTONIC);
 };
 
-}  // namespace vernier::sim::internal
+}  // namespace vernier::internal

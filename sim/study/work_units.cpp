@@ -63,9 +63,9 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std:
   std::set<std::string> commands;  // each program is started once
   for (const StudyCell& cell : study.file.cells) {
     if (!cell.system.is_localiser()) {
-      const std::string command = cell.system.command();
       if (stop.stop_requested()) return;
-      if (command.empty() || commands.insert(command).second) system(cell);
+      const bool starts = cell.system.name == "program";
+      if (!starts || commands.insert(cell.system.command()).second) system(cell);
       continue;
     }
     StudyCell still = cell;

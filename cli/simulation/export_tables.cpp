@@ -120,19 +120,44 @@ void add_interval(Row& row, const std::string& name, const std::optional<Interva
   row.real(name + "_high", interval ? interval->high : no_number);
 }
 
+/// What cells of all systems have. Those without trials have no rates and times.
+class CellColumns {
+ public:
+  CellColumns(Row& row, const CellSummary& summary)
+      : row_(row), s_(summary), of_(summary.trials > 0 ? 1 : no_number) {}
+
+  void rate(const std::string& name, double value) { row_.real(name, of_ * value); }
+
+  void add_success(const std::string& blocks) {
+    row_.whole("trials", s_.trials);
+    row_.whole(blocks, s_.maps);
+    rate("success", s_.success);
+    add_interval(row_, "success", s_.success_interval_95);
+    add_interval(row_, "success_binomial",
+                 s_.trials > 0 ? std::optional(s_.success_interval_binomial_95) : std::nullopt);
+    rate("coverage", s_.coverage);
+    rate("success_when_answered", s_.success_when_answered);
+  }
+
+  void add_times() {
+    rate("cpu_ms_mean", s_.cpu_ms_mean);
+    row_.real("cpu_ms_median", s_.cpu_ms_median);
+    row_.real("cpu_ms_p95", s_.cpu_ms_p95);
+    rate("wall_ms_mean", s_.wall_ms_mean);
+  }
+
+ private:
+  Row& row_;
+  const CellSummary& s_;
+  double of_;
+};
+
 /// Of another system than a localiser.
 void add_system_figures(Row& row, const CellResult& cell) {
   const CellSummary& s = cell.summary;
   const SystemSettings& system = cell.cell.system;
-  const double of = s.trials > 0 ? 1 : no_number;
-  row.whole("trials", s.trials);
-  row.whole("blocks", s.maps);
-  row.real("success", of * s.success);
-  add_interval(row, "success", s.success_interval_95);
-  add_interval(row, "success_binomial",
-               s.trials > 0 ? std::optional(s.success_interval_binomial_95) : std::nullopt);
-  row.real("coverage", of * s.coverage);
-  row.real("success_when_answered", of * s.success_when_answered);
+  CellColumns columns(row, s);
+  columns.add_success("blocks");
   row.whole("failed", s.failed);
   row.whole("unsure", s.unsure);
   const std::string& error = system_kind(system.name).error_name;
@@ -144,40 +169,34 @@ void add_system_figures(Row& row, const CellResult& cell) {
     row.real("rms_" + system.measured_names[i], m.rms);
     row.real("median_" + system.measured_names[i], m.median);
   }
-  row.real("cpu_ms_mean", of * s.cpu_ms_mean);
-  row.real("cpu_ms_median", s.cpu_ms_median);
-  row.real("cpu_ms_p95", s.cpu_ms_p95);
-  row.real("wall_ms_mean", of * s.wall_ms_mean);
+  columns.add_times();
 }
 
-void add_figures(Row& row, const CellResult& cell) {
+void add_localisation_figures(Row& row, const CellResult& cell) {
   const CellSummary& s = cell.summary;
-  const double of = s.trials > 0 ? 1 : no_number;  // a cell without trials has no rates and times
-  if (!cell.cell.system.is_localiser()) return add_system_figures(row, cell);
-  row.whole("trials", s.trials);
-  row.whole("maps", s.maps);
-  row.real("success", of * s.success);
-  add_interval(row, "success", s.success_interval_95);
-  add_interval(row, "success_binomial",
-               s.trials > 0 ? std::optional(s.success_interval_binomial_95) : std::nullopt);
-  row.real("coverage", of * s.coverage);
-  row.real("success_when_answered", of * s.success_when_answered);
-  row.real("best_guess_success", of * s.best_guess_success);
+  CellColumns columns(row, s);
+  columns.add_success("maps");
+  columns.rate("best_guess_success", s.best_guess_success);
   row.whole("failed", s.failed);
-  row.real("node_success", of * s.node_success);
-  row.real("recall_0_5m_5deg", of * s.recall_05);
-  row.real("recall_0_25m_2deg", of * s.recall_025);
+  columns.rate("node_success", s.node_success);
+  columns.rate("recall_0_5m_5deg", s.recall_05);
+  columns.rate("recall_0_25m_2deg", s.recall_025);
   row.real("median_error_m", s.median_error);
   row.real("median_heading_error_deg", s.median_heading_error_rad * 180 / std::numbers::pi);
-  row.real("cpu_ms_mean", of * s.cpu_ms_mean);
-  row.real("cpu_ms_median", s.cpu_ms_median);
-  row.real("cpu_ms_p95", s.cpu_ms_p95);
-  row.real("wall_ms_mean", of * s.wall_ms_mean);
+  columns.add_times();
   const std::optional<WorldCeiling>& ceiling = cell.ceiling;
   row.real("world_ceiling", ceiling ? ceiling->success : no_number);
   add_interval(row, "world_ceiling",
                ceiling ? std::optional(ceiling->success_interval_95) : std::nullopt);
   row.real("unaliased_share", ceiling ? ceiling->unaliased : no_number);
+}
+
+void add_figures(Row& row, const CellResult& cell) {
+  if (cell.cell.system.is_localiser()) {
+    add_localisation_figures(row, cell);
+  } else {
+    add_system_figures(row, cell);
+  }
 }
 
 void add_pose(Row& row, const std::string& name, const Pose2D& pose, bool is_known) {

@@ -236,17 +236,24 @@ TEST(Systems, AProgramThatCannotAnswerEndsTheStudyBeforeItBegins) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));
 }
 
-TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
-  const test::TestFolder folder("systems");
+/// A program in Python that gets ready and does this with the number t of each trial.
+std::string python_system(const test::TestFolder& folder, const std::string& with_trial) {
   std::ofstream(folder / "p.py") << "import json, sys\n"
                                     "json.loads(sys.stdin.readline())\n"
                                     "print('{\"ready\": true}', flush=True)\n"
                                     "for line in sys.stdin:\n"
                                     "  t = json.loads(line)['trial']\n"
-                                    "  if t % 10 == 3: sys.exit('no parcel')\n"
-                                    "  if t % 10 == 4: print('{\"answered\": false}', flush=True)\n"
-                                    "  else: print('{\"error\": 0.01}', flush=True)\n";
-  const Study study = system_study(program_study("python3 '" + (folder / "p.py").string() + "'"));
+                                 << with_trial;
+  return "python3 '" + (folder / "p.py").string() + "'";
+}
+
+TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
+  const test::TestFolder folder("systems");
+  const Study study = system_study(
+      program_study(python_system(folder,
+                                  "  if t % 10 == 3: sys.exit('no parcel')\n"
+                                  "  if t % 10 == 4: print('{\"answered\": false}', flush=True)\n"
+                                  "  else: print('{\"error\": 0.01}', flush=True)\n")));
   run_study(study, {folder / "a", 2, {}, {}, {}});
   const CellSummary summary = study_results(study, folder / "a").cells[0].summary;
   EXPECT_EQ(summary.trials, 30);
@@ -260,14 +267,8 @@ TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
 // Whatever failed before, and in whichever block it is.
 TEST(Systems, ATrialOfAProgramKnowsNothingOfOthers) {
   const test::TestFolder folder("systems");
-  std::ofstream(folder / "p.py") << "import json, sys\n"
-                                    "json.loads(sys.stdin.readline())\n"
-                                    "print('{\"ready\": true}', flush=True)\n"
-                                    "for line in sys.stdin:\n"
-                                    "  t = json.loads(line)['trial']\n"
-                                    "  print('{\"error\": 0.01}' if t < 4 or t > 7 else 'none',"
-                                    " flush=True)\n";
-  const Study study = system_study(program_study("python3 '" + (folder / "p.py").string() + "'"));
+  const Study study = system_study(program_study(python_system(
+      folder, "  print('{\"error\": 0.01}' if t < 4 or t > 7 else 'none', flush=True)\n")));
   const auto system = system_of_cell(study);
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     EXPECT_EQ(system->run(trial).answered(), trial < 4 || trial > 7) << trial;

@@ -16,6 +16,7 @@
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
 #include "localise/place.h"
+#include "sim/images/depths.h"
 #include "sim/images/image_scene.h"
 #include "sim/images/image_truth.h"
 #include "sim/images/render.h"
@@ -84,7 +85,7 @@ void pair_with_truth(benchmark::State& state) {
   for (auto _ : state) {
     const Pose T = place(i++);
     const RectifiedView view = rectified_view(rig(), geometry, T);
-    benchmark::DoNotOptimize(rendered_pair(scene(), rig(), view, T, {}, {}));
+    benchmark::DoNotOptimize(rendered_pair(scene(), rig(), rig(), view.geometry, T, {}, {}));
     benchmark::DoNotOptimize(pair_truth(scene(), rig(), view, 1));
   }
 }

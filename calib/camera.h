@@ -74,6 +74,10 @@ Eigen::Vector2d project(const Camera& camera,
                         const Eigen::Vector3d& point,
                         ProjectionJacobian& jacobian);
 
+/// The same; std::nullopt for a point behind the camera or beyond the fold of its distortion, and
+/// for a camera with f or ax not above 0.
+std::optional<Eigen::Vector2d> try_project(const Camera& camera, const Eigen::Vector3d& point);
+
 /// The ray (x / z, y / z, 1) that projects to `pixel`, by Newton's method on the distortion, to
 /// rounding. Throws Error if the model cannot be inverted there (beyond its fold).
 Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel);

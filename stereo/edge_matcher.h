@@ -36,7 +36,8 @@ struct EdgeMatch {
 /// Vernier's own sparse matcher:
 ///
 ///  1. costs of every left edge point at every disparity: 3 x 3 census words
-///     (stereo/matching/census.h);
+///     (stereo/matching/census.h), and the grey levels on both sides of the edge, the right image's
+///     by a tone curve that is found from the pair (stereo/matching/tone_curve.h);
 ///  2. semi-global support between edge points (stereo/matching/edge_support.h);
 ///  3. the same from the matched positions in the right image; a point is kept if both directions
 ///     agree within one disparity, its best disparity leads any other by `min_margin`, and at least

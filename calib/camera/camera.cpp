@@ -110,6 +110,14 @@ Eigen::Vector2d project(const Camera& camera,
       camera.model);
 }
 
+std::optional<Eigen::Vector2d> try_project(const Camera& camera, const Eigen::Vector3d& point) {
+  if (!(camera.f_px() > 0 && camera.ax() > 0 && point.z() > 0)) return std::nullopt;
+  ProjectionJacobian J;
+  const Eigen::Vector2d pixel = project(camera, point, J);
+  if (!pixel.allFinite() || !(J.point.leftCols<2>().determinant() > 0)) return std::nullopt;
+  return pixel;
+}
+
 std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
   return std::visit(
       [&](auto m) -> std::optional<Eigen::Vector3d> {

@@ -64,17 +64,6 @@ void check(const SamplingOptions& options, bool needs_boards, bool has_boards) {
   }
 }
 
-bool is_lens(const Camera& camera) { return camera.f_px() > 0 && camera.ax() > 0; }
-
-/// The pixel of a point, unless it is behind the camera or beyond the fold of its distortion.
-std::optional<Eigen::Vector2d> physical_pixel(const Camera& camera, const Eigen::Vector3d& x) {
-  if (!is_lens(camera) || !(x.z() > 0)) return std::nullopt;
-  ProjectionJacobian J;
-  const Eigen::Vector2d q = project(camera, x, J);
-  if (!q.allFinite() || !(J.point.leftCols<2>().determinant() > 0)) return std::nullopt;
-  return q;
-}
-
 /// The position, in the frame of `drawn`, of the point that is at `point` in the frame of `told`.
 Eigen::Vector3d carried(const Pose& told,
                         const Pose& drawn,
@@ -127,7 +116,7 @@ std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Eigen::Vector3d x = carried(told.T_camera_first[camera], drawn.T_camera_first[camera],
                                         points[k], fixed_to, map);
-      const auto q = physical_pixel(drawn.cameras[camera], x);
+      const auto q = try_project(drawn.cameras[camera], x);
       if (q) moments[k].add(*q - project(told.cameras[camera], points[k].x_camera));
     }
   }

@@ -63,8 +63,8 @@ RenderedView view_of(const RenderedWorld& world,
                      const Pose& T_left,
                      std::uint32_t number) {
   RenderedView rendered;
-  rendered.pair =
-      rendered_pair(world.scene, world.rig, view, T_left, options.pair, {options.seed, number, 0});
+  rendered.pair = rendered_pair(world.scene, world.rig, world.rig, view.geometry, T_left,
+                                options.pair, {options.seed, number, 0});
   rendered.truth = pair_truth(world.scene, world.rig, view, options.pair.render.threads);
   rendered.edges = true_edges(world.visibility, world.scene.segments, view);
   return rendered;
@@ -199,7 +199,8 @@ void run(RenderArguments options, Session& session) {
       pairs += pair_toml(fmt::format("{:03}", i), inside, rendered.truth);
       edges += rendered.edges.both.size();
       if (options.compare) {
-        add_pair(rendered.pair, rendered.edges, search_range(rendered.truth), matchers, compared);
+        add_pair(rendered.pair, rendered.edges, search_range(rendered.truth.left), matchers,
+                 compared);
       }
       progress.update(static_cast<int>(i) + 1, static_cast<int>(poses.size()));
     }

@@ -117,7 +117,7 @@ std::string pair_toml(const std::string& name, const std::string& folder, const 
       "[[pair]]\nname = \"{}\"\nleft = \"{}left.png\"\nright = \"{}right.png\"\n"
       "truth = \"{}disparity.pfm\"\nright_truth = \"{}right_disparity.pfm\"\n"
       "truth_kind = \"exact\"\nmin_disparity = 0\nmax_disparity = {}\nrig = \"{}rig.json\"\n\n",
-      name, rectified, rectified, rectified, rectified, search_range(truth).max_px, rectified);
+      name, rectified, rectified, rectified, rectified, search_range(truth.left).max_px, rectified);
 }
 
 }  // namespace vernier::cli

@@ -26,6 +26,7 @@
 #include "cli/simulation/study_table.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::cli {
 namespace {
@@ -81,7 +82,7 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
-  if (system_of(study.file).name == "matcher") cv::setNumThreads(1);  // as evaluate
+  if (system_kind(system_of(study.file).name).uses_opencv) cv::setNumThreads(1);  // as evaluate
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };

@@ -69,19 +69,19 @@ namespace {
 /// where most calibrations are doubted.
 void tell_failed_system(const CellResult& cell, Session& session) {
   const CellSummary& s = cell.summary;
-  const std::string& system = cell.cell.system.name;
+  const SystemKind& kind = system_kind(cell.cell.system.name);
   const auto tell = [&](int trials, const char* what, const std::string& why, bool is_result) {
     const std::string text =
-        fmt::format("{} {} in {} of {} trials of cell \"{}\"{}{}", system_kind(system).noun, what,
-                    trials, s.trials, cell.cell.label, why.empty() ? "" : ", the first by: ", why);
+        fmt::format("{} {} in {} of {} trials of cell \"{}\"{}{}", kind.noun, what, trials,
+                    s.trials, cell.cell.label, why.empty() ? "" : ", the first by: ", why);
     is_result ? session.warn(text) : session.add_trust_warning(text);
   };
   const bool calibrations_fail = cell.calibrations && cell.calibrations->failed > 0;
   if (s.failed > 0) {
     tell(s.failed, "failed", s.why_failed,
-         calibrations_fail || (system == "calibration" && s.failed < s.trials));
+         calibrations_fail || (kind.calibrates && s.failed < s.trials));
   }
-  if (system == "calibration" && 2 * s.unsure > s.trials - s.failed) {
+  if (kind.calibrates && 2 * s.unsure > s.trials - s.failed) {
     tell(s.unsure, "is doubtful", s.why_unsure, false);
   }
 }

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/base/error_place.h"
@@ -15,6 +18,7 @@
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/quantile.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
@@ -25,17 +29,21 @@
 #include "sim/images/rendered_pair.h"
 #include "sim/images/sensor_response.h"
 #include "sim/images/surface_appearance.h"
+#include "sim/images/told_truth.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
+#include "sim/told_rigs.h"
 #include "sim/visibility.h"
 #include "stereo/canny_edges.h"
+#include "stereo/disparity_file.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/built_in_matchers.h"
 #include "stereo/matching/external_matcher.h"
+#include "stereo/matching/map_window.h"
 #include "stereo/rectification.h"
 #include "stereo/stereo_truth.h"
 
@@ -87,14 +95,56 @@ double share_not_right(const EdgeMetrics& edges) {
   return 1 - right / edges.edges;
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Median of |z / z_true − 1| over the edges whose disparity is within 1 px of the truth, or within
+/// a pixel of a discontinuity of either surface's; z by the told rig. NaN if there are none.
+double median_depth_error(const stereo::RectifiedGeometry& told,
+                          const ToldTruth& truth,
+                          const std::vector<EdgePoint>& edges,
+                          const std::vector<stereo::EdgeDisparity>& found) {
+  const stereo::DisparityMap& map = truth.stereo.disparity;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!found[i].matched()) continue;
+    const stereo::internal::MapWindow near(map, stereo::internal::column_of(edges[i], map, "truth"),
+                                           edges[i].y, 1);
+    double least_px = 1, z = unknown;
+    for (int y = near.y0; y <= near.y1; ++y) {
+      for (int x = near.x0; x <= near.x1; ++x) {
+        const double off_px = std::abs(double{map(x, y)} - found[i].disparity_px);
+        if (!(off_px < least_px)) continue;
+        least_px = off_px;
+        z = truth.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width_px) +
+                          static_cast<std::size_t>(x)];
+      }
+    }
+    if (std::isfinite(z)) errors.push_back(std::abs(told.depth_m(found[i].disparity_px) / z - 1));
+  }
+  return errors.empty() ? unknown : quantile(std::move(errors), 0.5, QuantileKind::linear);
+}
+
+/// RMS over the left pixels that the right camera sees too; NaN if there are none.
+double rms_row_error(const ToldTruth& truth) {
+  double squares = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < truth.vertical_px.size(); ++i) {
+    const double off_px = truth.vertical_px[i];
+    if (truth.stereo.occluded[i] != 0 || !std::isfinite(off_px)) continue;
+    squares += off_px * off_px;
+    ++count;
+  }
+  return count == 0 ? unknown : std::sqrt(squares / count);
+}
+
 class MatcherSystem : public SystemUnderTest {
  public:
   explicit MatcherSystem(const SystemSetup& setup)
       : cell_(setup.cell),
         visibility_(setup.visibility),
         rig_(setup.rig.rig),
+        told_(rigs_told(setup)),
         places_(setup.places),
-        geometry_(stereo::rectified_geometry(rig_)),
         scene_(image_scene(setup.visibility.world(),
                            scene_of(setup.cell.system, setup.cell.experiment.seed))),
         images_(images_of(setup.cell.system)),
@@ -104,8 +154,10 @@ class MatcherSystem : public SystemUnderTest {
 
   TrialResult run(std::uint32_t trial) override {
     const Pose2D pose = places_->draw(cell_.experiment.seed, trial);
-    TrialResult result = failed_trial(cell_.system, trial, {});
+    const ToldRig told = told_ ? told_->told(trial) : ToldRig{rig_, {}};
+    TrialResult result = failed_trial(cell_.system, trial, told.failure);
     result.truth = pose;
+    if (!told.failure.empty()) return result;
     const Pose T_left = T_left_world(pose, cell_.experiment.mount);
     const Pose T_right = rig_.T_camera_first[1] * T_left;
     if (!visibility_.sees(T_left.inverse().t, T_right.inverse().t)) {
@@ -113,7 +165,7 @@ class MatcherSystem : public SystemUnderTest {
       return result;
     }
     try {
-      match(T_left, result);
+      match(T_left, told.rig, result);
     } catch (const Error& error) {
       result.failure = error.place() + ": " + error.fault();
     }
@@ -121,32 +173,34 @@ class MatcherSystem : public SystemUnderTest {
   }
 
  private:
-  void match(const Pose& T_left, TrialResult& result) const {
-    const RectifiedView view = rectified_view(rig_, geometry_, T_left);
-    const RenderedPair images = rendered_pair(scene_, rig_, view, T_left, images_,
+  void match(const Pose& T_left, const Rig& told, TrialResult& result) const {
+    const stereo::RectifiedGeometry geometry = stereo::rectified_geometry(told);
+    const RenderedPair images = rendered_pair(scene_, rig_, told, geometry, T_left, images_,
                                               {cell_.experiment.seed, result.trial, 0});
-    const PairTruth truth = pair_truth(scene_, rig_, view, 1);
+    const ToldTruth truth = told_truth(scene_, rig_, told, geometry, T_left, 1);
     const stereo::RectifiedPair& pair = images.rectified.pair;
     const std::vector<EdgePoint> edges =
         stereo::canny_edges(pair.left, {.noise = images.rectified.left_noise});
-    const std::vector<stereo::TruthAtEdge> at_edges =
-        stereo::truth_at(stereo::stereo_truth(truth.left, &truth.right), edges);
+    const std::vector<stereo::TruthAtEdge> at_edges = stereo::truth_at(truth.stereo, edges);
     const ThreadClock clock;
     const std::vector<stereo::EdgeDisparity> found =
-        matcher_.match(pair, edges, search_range(truth));
+        matcher_.match(pair, edges, search_range(truth.stereo.disparity));
     result.wall_ms = clock.wall_ms();
     // A program's own time is not known: it counts by the wall, with what is done beside it.
     result.cpu_ms = cell_.system.command().empty() ? clock.cpu_ms() : result.wall_ms;
-    score(stereo::evaluate(edges, found, at_edges, pair.left.width_px), result);
+    score(stereo::evaluate(edges, found, at_edges, pair.left.width_px),
+          median_depth_error(geometry, truth, edges, found), rms_row_error(truth), result);
   }
 
-  static void score(const MatcherScore& score, TrialResult& result) {
+  static void score(const MatcherScore& score,
+                    double depth_error,
+                    double row_error_px,
+                    TrialResult& result) {
     const EdgeMetrics& all = score.all;
     if (all.edges == 0) {
       result.status = LocalisationStatus::too_few_lines;
       return;
     }
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const bool has_inliers = all.inliers > 0;
     result.status = LocalisationStatus::answered;
     result.error = share_not_right(all);
@@ -156,14 +210,16 @@ class MatcherSystem : public SystemUnderTest {
                        all.matched > 0 ? score.mismatch : unknown,
                        has_inliers ? all.rms_inlier_px : unknown,
                        has_inliers ? all.bias_inlier_px : unknown,
-                       score.stated > 0 ? score.z_rms : unknown};
+                       score.stated > 0 ? score.z_rms : unknown,
+                       depth_error,
+                       row_error_px};
   }
 
   const StudyCell& cell_;
   const Visibility& visibility_;
   const Rig& rig_;
+  std::shared_ptr<const ToldRigs> told_;
   std::shared_ptr<const QueryPlaces> places_;
-  stereo::RectifiedGeometry geometry_;
   ImageScene scene_;
   PairOptions images_;
   Matcher matcher_;
@@ -219,9 +275,12 @@ SystemKind matcher_kind() {
            {.name = "full_well_e", .usual = usual(sensor.full_well_e), .low = 10, .high = 1e7},
            {.name = "read_noise_e", .usual = usual(sensor.read_noise_e), .low = 0, .high = 1e6}},
       .measured = {"edges", "density", "bad_1", "mismatch", "rms_inlier_px", "bias_inlier_px",
-                   "z_rms"},
-      .sections = {"world", "camera"},
+                   "z_rms", "depth_error", "row_error_px"},
+      .sections = {"world", "camera", "sources", "calibration"},
+      .sources = SourcesUsed::calibration,
       .uses_protocol = true,
+      .tells_rigs = true,
+      .uses_opencv = true,
       .make = [](const SystemSetup& setup) { return std::make_unique<MatcherSystem>(setup); }};
 }
 

@@ -11,8 +11,8 @@
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "sim/images/depths.h"
 #include "sim/images/image_scene.h"
-#include "sim/images/render.h"
 #include "stereo/disparity_file.h"
 #include "stereo/grey_levels.h"
 #include "stereo/rectification.h"
@@ -69,13 +69,13 @@ PairTruth pair_truth(const ImageScene& scene,
   return truth;
 }
 
-stereo::DisparityRange search_range(const PairTruth& truth) {
+stereo::DisparityRange search_range(const stereo::DisparityMap& truth) {
   constexpr float margin_px = 2;
   float largest = 0;
-  for (const float d : truth.left.values) {
+  for (const float d : truth.values) {
     if (d > largest) largest = d;  // false for an unknown one
   }
-  const int most = std::max(16, truth.left.width_px / 2);
+  const int most = std::max(16, truth.width_px / 2);
   return {0, std::min(most, static_cast<int>(std::ceil(largest + margin_px)))};
 }
 

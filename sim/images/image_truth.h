@@ -41,6 +41,6 @@ PairTruth pair_truth(const ImageScene& scene,
                      int threads);
 
 /// Disparities to search: from 0 to 2 px above the largest true one, at most half the width.
-stereo::DisparityRange search_range(const PairTruth& truth);
+stereo::DisparityRange search_range(const stereo::DisparityMap& truth);
 
 }  // namespace vernier::sim::internal

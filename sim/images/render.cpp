@@ -21,6 +21,7 @@
 #include "sim/images/materials.h"
 #include "sim/images/pixel_rays.h"
 #include "sim/images/ray_scene.h"
+#include "sim/images/tracer.h"
 #include "stereo/grey_levels.h"
 
 namespace vernier::sim::internal {
@@ -31,133 +32,6 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr int no_face = -1;
-
-/// The eye of a view, its rays and what they hit.
-class Eye {
- public:
-  Eye(const ImageScene& scene, const Pose& T_camera_world)
-      : scene_(scene),
-        R_world_camera_(T_camera_world.R.transpose()),
-        at_(T_camera_world.inverse().t),
-        from_((at_ - scene.middle_m).cast<float>()) {}
-
-  const ImageScene& scene() const { return scene_; }
-  const Vector3d& at() const { return at_; }
-
-  /// World direction of a ray (x / z, y / z): its length is 1 / cos of the angle to the axis, so a
-  /// distance in units of it is the depth along the axis.
-  Vector3d direction(const Vector2d& ray) const {
-    return R_world_camera_ * Vector3d(ray.x(), ray.y(), 1);
-  }
-
-  RayBundle bundle(const Vector2d* rays, int count) const {
-    RayBundle b;
-    b.origin_m = from_;
-    b.count = count;
-    for (int i = 0; i < count; ++i) {
-      const Vector3f d = direction(rays[i]).cast<float>();
-      const auto k = static_cast<std::size_t>(i);
-      b.x[k] = d.x();
-      b.y[k] = d.y();
-      b.z[k] = d.z();
-    }
-    return b;
-  }
-
-  /// Depth at which a ray meets a plane.
-  template <class Plane>
-  double depth(const Plane& plane, const Vector3d& direction) const {
-    return (plane.distance_m - plane.normal.dot(at_)) / plane.normal.dot(direction);
-  }
-
- private:
-  const ImageScene& scene_;
-  Eigen::Matrix3d R_world_camera_;
-  Vector3d at_;
-  Vector3f from_;
-};
-
-/// What the rays of a bundle see: a face and the figures painted over it.
-struct Seen {
-  int face = no_face;
-  std::array<int, BundleCrossings::limit> figures;  ///< ascending
-  int figure_count = 0;
-
-  bool operator==(const Seen& other) const {
-    return face == other.face && figure_count == other.figure_count &&
-           std::equal(figures.begin(), figures.begin() + figure_count, other.figures.begin());
-  }
-};
-
-/// Traces bundles of rays from an eye.
-class Tracer {
- public:
-  explicit Tracer(const Eye& eye) : eye_(eye) {}
-
-  void trace(const RayBundle& rays, std::array<Seen, bundle_size>& seen) {
-    const ImageScene& scene = eye_.scene();
-    scene.solids.nearest(rays, hits_);
-    std::array<float, bundle_size> farthest{};
-    for (int i = 0; i < rays.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const bool hit = hits_.triangle[k] != no_triangle;
-      seen[k].face = hit ? scene.face_of_triangle[hits_.triangle[k]] : no_face;
-      seen[k].figure_count = 0;
-      // A figure in the plane of its face may be hit a little behind it.
-      if (hit) farthest[k] = 1.001F * hits_.distance[k] + slack_m;
-    }
-    scene.paint.crossings(rays, farthest, crossings_);
-    for (int i = 0; i < rays.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (seen[k].face != no_face && crossings_.count[k] > 0) {
-        add_figures(k, Vector3f(rays.x[k], rays.y[k], rays.z[k]), seen[k]);
-      }
-    }
-  }
-
- private:
-  static constexpr float slack_m = 0.01F;
-
-  /// The figures within 3 cm in front of the face, or 1 mm behind it, across their plane.
-  void add_figures(std::size_t ray, const Vector3f& direction, Seen& seen) const {
-    constexpr double in_front_m = 0.03, behind_m = 1e-3;
-    const ImageScene& scene = eye_.scene();
-    for (int c = 0; c < crossings_.count[ray]; ++c) {
-      const auto at = static_cast<std::size_t>(c);
-      const int figure = scene.figure_of_triangle[crossings_.triangle[ray][at]];
-      const PaintPlane& plane = scene.figures[static_cast<std::size_t>(figure)];
-      const double before = (hits_.distance[ray] - crossings_.distance[ray][at]) *
-                            std::abs(plane.normal.cast<float>().dot(direction));
-      if (before > in_front_m || before < -behind_m) continue;
-      int* const end = seen.figures.data() + seen.figure_count;
-      int* const place = std::lower_bound(seen.figures.data(), end, figure);
-      if (place != end && *place == figure) continue;
-      std::copy_backward(place, end, end + 1);
-      *place = figure;
-      ++seen.figure_count;
-    }
-  }
-
-  const Eye& eye_;
-  BundleHits hits_;
-  BundleCrossings crossings_;
-};
-
-/// Depth of what a ray sees: of the smallest figure there, which is the innermost of nested ones,
-/// else of the face.
-double depth_of(const Eye& eye, const Seen& seen, const Vector3d& direction) {
-  const ImageScene& scene = eye.scene();
-  const PaintPlane* smallest = nullptr;
-  for (int i = 0; i < seen.figure_count; ++i) {
-    const auto figure = static_cast<std::size_t>(seen.figures[static_cast<std::size_t>(i)]);
-    const PaintPlane& plane = scene.figures[figure];
-    if (smallest == nullptr || plane.area_m2 < smallest->area_m2) smallest = &plane;
-  }
-  if (smallest != nullptr) return eye.depth(*smallest, direction);
-  return eye.depth(scene.faces[static_cast<std::size_t>(seen.face)], direction);
-}
-
 /// Shades what a pixel sees.
 class Shader {
  public:
@@ -166,7 +40,7 @@ class Shader {
 
   /// Radiance of a face with figures, where the ray of this direction meets it. A figure has
   /// the texture of its face, at its own depth.
-  double operator()(const Seen& seen, const Vector3d& direction) const {
+  double operator()(const SeenSurface& seen, const Vector3d& direction) const {
     const ImageScene& scene = eye_.scene();
     const SolidFace& face = scene.faces[static_cast<std::size_t>(seen.face)];
     const double depth = depth_of(eye_, seen, direction);
@@ -181,7 +55,7 @@ class Shader {
   }
 
   /// A number that differs if other lamps reach the face there.
-  std::uint64_t lamps_seen(const Seen& seen, const Vector3d& direction) const {
+  std::uint64_t lamps_seen(const SeenSurface& seen, const Vector3d& direction) const {
     const ImageScene& scene = eye_.scene();
     const SolidFace& face = scene.faces[static_cast<std::size_t>(seen.face)];
     const Vector3d x = eye_.at() + eye_.depth(face, direction) * direction;
@@ -289,7 +163,7 @@ class RowRenderer {
 
   /// Sum over the samples of one face; each on its own where a shadow ends between them.
   double sum_of_face() const {
-    const Seen& seen = seen_[same_.front()];
+    const SeenSurface& seen = seen_[same_.front()];
     if (shadows_ && !is_evenly_lit(seen)) {
       double sum = 0;
       for (const std::size_t i : same_) sum += shader_(seen, eye_.direction(rays_[i]));
@@ -302,7 +176,7 @@ class RowRenderer {
   }
 
   /// Whether the same lamps reach the samples at the corners of the pattern.
-  bool is_evenly_lit(const Seen& seen) const {
+  bool is_evenly_lit(const SeenSurface& seen) const {
     const auto side = static_cast<std::size_t>(std::lround(std::sqrt(double(places_.size()))));
     const std::size_t n = same_.size();
     const std::uint64_t first = shader_.lamps_seen(seen, eye_.direction(rays_[same_[0]]));
@@ -318,31 +192,11 @@ class RowRenderer {
   Shader shader_;
   bool shadows_;
   std::vector<Vector2d> places_, rays_;
-  std::vector<Seen> seen_;
-  std::array<Seen, bundle_size> bundle_;
+  std::vector<SeenSurface> seen_;
+  std::array<SeenSurface, bundle_size> bundle_;
   std::vector<char> done_;
   std::vector<std::size_t> same_;  ///< samples of one face
 };
-
-void depths_of_row(const Eye& eye, const Camera& camera, int row, double* depths) {
-  Tracer tracer(eye);
-  std::array<Seen, bundle_size> seen;
-  std::array<Vector2d, bundle_size> rays;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (int from = 0; from < camera.size_px[0]; from += bundle_size) {
-    const int count = std::min(bundle_size, camera.size_px[0] - from);
-    for (int i = 0; i < count; ++i) {
-      const auto ray = try_unproject(camera, Vector2d(from + i, row));
-      rays[static_cast<std::size_t>(i)] = ray ? Vector2d(ray->head<2>()) : Vector2d(none, none);
-    }
-    tracer.trace(eye.bundle(rays.data(), count), seen);
-    for (int i = 0; i < count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      depths[from + i] =
-          seen[k].face == no_face ? none : depth_of(eye, seen[k], eye.direction(rays[k]));
-    }
-  }
-}
 
 }  // namespace
 
@@ -376,21 +230,6 @@ stereo::GreyLevels render(const ImageScene& scene,
     RowRenderer(eye, camera, options)(static_cast<int>(row), &image.values[row * width]);
   });
   return image;
-}
-
-std::vector<double> depths_m(const ImageScene& scene,
-                             const Camera& camera,
-                             const Pose& T_camera_world,
-                             int threads) {
-  check_image_size(camera);
-  const auto width = static_cast<std::size_t>(camera.size_px[0]);
-  const auto height = static_cast<std::size_t>(camera.size_px[1]);
-  std::vector<double> depths(width * height);
-  const Eye eye(scene, T_camera_world);
-  vernier::internal::for_each_index(height, threads, [&](std::size_t row) {
-    depths_of_row(eye, camera, static_cast<int>(row), &depths[row * width]);
-  });
-  return depths;
 }
 
 }  // namespace vernier::sim::internal

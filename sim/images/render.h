@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "sim/images/image_scene.h"
@@ -31,14 +29,6 @@ stereo::GreyLevels render(const ImageScene& scene,
                           const Camera& camera,
                           const Pose& T_camera_world,
                           const RenderOptions& options = {});
-
-/// Depth along the optical axis, metres, at the pixel centres, in double precision: of the plane of
-/// the face that is hit, or of the smallest figure painted there; NaN where nothing is hit.
-/// Row-major.
-std::vector<double> depths_m(const ImageScene& scene,
-                             const Camera& camera,
-                             const Pose& T_camera_world,
-                             int threads = 1);
 
 /// Throws Error for a camera of more than 1e8 pixels, or of none.
 void check_image_size(const Camera& camera);

@@ -10,10 +10,10 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "sim/images/image_scene.h"
-#include "sim/images/image_truth.h"
 #include "sim/images/render.h"
 #include "sim/images/sensor_response.h"
 #include "stereo/grey_levels.h"
+#include "stereo/rectification.h"
 #include "stereo/rectified_images.h"
 
 namespace vernier::sim::internal {
@@ -22,7 +22,8 @@ using stereo::GreyLevels;
 
 RenderedPair rendered_pair(const ImageScene& scene,
                            const Rig& rig,
-                           const RectifiedView& view,
+                           const Rig& told,
+                           const stereo::RectifiedGeometry& geometry,
                            const Pose& T_left_world,
                            const PairOptions& options,
                            const SensorDraws& draws) {
@@ -44,9 +45,8 @@ RenderedPair rendered_pair(const ImageScene& scene,
   }
   const int threads = options.render.threads;
   RenderedPair pair;
-  pair.rectified = stereo::rectified_images(rig, view.geometry, noisy[0], noisy[1], threads);
-  pair.without_noise =
-      stereo::rectified_images(rig, view.geometry, clean[0], clean[1], threads).pair;
+  pair.rectified = stereo::rectified_images(told, geometry, noisy[0], noisy[1], threads);
+  pair.without_noise = stereo::rectified_images(told, geometry, clean[0], clean[1], threads).pair;
   pair.left = std::move(noisy[0]);
   pair.right = std::move(noisy[1]);
   pair.exposure = sensor.exposure;

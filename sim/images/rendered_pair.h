@@ -5,10 +5,10 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "sim/images/image_scene.h"
-#include "sim/images/image_truth.h"
 #include "sim/images/render.h"
 #include "sim/images/sensor_response.h"
 #include "stereo/grey_levels.h"
+#include "stereo/rectification.h"
 #include "stereo/rectified_images.h"
 
 namespace vernier::sim::internal {
@@ -26,11 +26,12 @@ struct RenderedPair {
   double exposure = 0;                  ///< of both
 };
 
-/// Renders both eyes with one exposure, from the left image if it is automatic. Throws Error for
-/// options out of range.
+/// Renders both eyes of `rig` with one exposure, from the left image if it is automatic, and
+/// rectifies them with `told` and its geometry. Throws Error for options out of range.
 RenderedPair rendered_pair(const ImageScene& scene,
                            const Rig& rig,
-                           const RectifiedView& view,
+                           const Rig& told,
+                           const stereo::RectifiedGeometry& geometry,
                            const Pose& T_left_world,
                            const PairOptions& options,
                            const SensorDraws& draws);

@@ -19,6 +19,7 @@
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_kind.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
@@ -49,7 +50,7 @@ std::vector<MissingRecord> missing_records(const Study& study,
     if (work.blocks[job].block != 0) continue;
     const StudyCell& cell = study.file.cells[static_cast<std::size_t>(work.blocks[job].cell)];
     // Of a study of calibrations the trials say it.
-    if (!cell.told.calibration || cell.system.name == "calibration") continue;
+    if (!cell.told.calibration || system_kind(cell.system.name).calibrates) continue;
     std::string key = calibration_key(study, cell);
     if (!seen.insert(key).second || stored.notes().count(key) > 0) continue;
     if (static_cast<int>(job % static_cast<std::size_t>(run.shard.count)) != run.shard.index) {

@@ -98,10 +98,9 @@ StudyCell StudyReader::read_cell(const toml::table& root, toml::source_index lin
   reader.read_world(root, cell);
   cell.told = ToldReader(place(), line).read(root);
   cell.system = SystemReader(place(), line).read(root);
-  if (system_kind(cell.system.name).sources == SourcesUsed::none) {
-    cell.experiment.sources.calibration = 0;
-  }
-  if (cell.system.name == "calibration" && !cell.told.calibration) cell.told.calibration.emplace();
+  const SystemKind& kind = system_kind(cell.system.name);
+  if (kind.sources == SourcesUsed::none) cell.experiment.sources.calibration = 0;
+  if (kind.calibrates && !cell.told.calibration) cell.told.calibration.emplace();
   return cell;
 }
 

@@ -74,6 +74,11 @@ struct SystemKind {
   SourcesUsed sources = SourcesUsed::none;
   bool uses_protocol = false;  ///< study.protocol
   bool tells_rigs = false;     ///< the estimator may be told another rig than the true one
+  /// Its trials are calibrations, with or without [calibration]: one that fails is a result.
+  bool calibrates = false;
+  bool is_program = false;  ///< a user's program and no more: one start tries it for all its cells
+  bool uses_opencv =
+      false;  ///< which is then held to one thread, as a study has threads of its own
   /// Null for localisers, which the engine runs itself, as their cells share maps.
   std::function<std::unique_ptr<SystemUnderTest>(const SystemSetup&)> make = {};
 

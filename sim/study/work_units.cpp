@@ -64,8 +64,8 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std:
   for (const StudyCell& cell : study.file.cells) {
     if (!cell.system.is_localiser()) {
       if (stop.stop_requested()) return;
-      const bool starts = cell.system.name == "program";
-      if (!starts || commands.insert(cell.system.command()).second) system(cell);
+      const bool is_program = system_kind(cell.system.name).is_program;
+      if (!is_program || commands.insert(cell.system.command()).second) system(cell);
       continue;
     }
     StudyCell still = cell;

@@ -75,6 +75,7 @@ SystemKind calibration_kind() {
       .measured = {"signed_depth_error_m", "stated_depth_sd_m", "error_over_sd"},
       .of_either_sign = {"signed_depth_error_m", "error_over_sd"},
       .sections = {"calibration"},
+      .calibrates = true,
       .make = [](const SystemSetup& setup) { return std::make_unique<CalibrationSystem>(setup); }};
 }
 

@@ -157,6 +157,7 @@ SystemKind program_kind() {
           .sections = {"sources", "calibration", "parameters"},
           .sources = SourcesUsed::calibration,
           .tells_rigs = true,
+          .is_program = true,
           .make = [](const SystemSetup& setup) { return std::make_unique<ProgramSystem>(setup); }};
 }
 

@@ -21,6 +21,8 @@
 #include "stereo/matching/edge_refinement.h"
 #include "stereo/matching/edge_support.h"
 #include "stereo/matching/matcher_input.h"
+#include "stereo/matching/side_levels.h"
+#include "stereo/matching/tone_curve.h"
 
 namespace vernier::stereo {
 
@@ -41,22 +43,37 @@ constexpr double slanted_slope = 0.6;  // of disparity, pixels per pixel
 /// Matches points of the left image to the right one, and back.
 class EdgeSearch {
  public:
-  EdgeSearch(const RectifiedPair& pair, const DisparityRange& range)
+  /// `points` and the offsets of their sides outlive the search.
+  EdgeSearch(const RectifiedPair& pair,
+             const PointsByRow& points,
+             const std::vector<SideOffset>& sides,
+             const DisparityRange& range)
       : pair_(pair),
+        points_(points),
+        offsets_(sides),
         width_(pair.left.width_px),
         height_(pair.left.height_px),
         least_(range.min_px),
         searched_(range.max_px - range.min_px + 1) {
     constexpr int step = 32;
     count_ = (searched_ + step - 1) / step * step;
-    border_ = count_ + std::abs(least_) + 2;
+    border_ = count_ + std::abs(least_) + 2 + side_border;
     left_ = census_transform(pair.left, border_);
     right_ = census_transform(pair.right, border_);
     mirrored_right_ = mirrored(right_);
+    for (const int x : points.x) first_.push_back(width_ - 1 - x + least_);
+    left_levels_ = mean_levels(pair.left, border_);
+    const LevelImage right = mean_levels(pair.right, border_);
+    const LevelImage mirrored_right = mirrored(right);
+    tones_ =
+        tone_curve(level_pairs({points, left_, mirrored_right_, first_, Facing::opposite, count_},
+                               {left_levels_, mirrored_right, sides}, searched_));
+    right_levels_ = toned(right, tones_);
+    mirrored_right_levels_ = toned(mirrored_right, tones_);
   }
 
   /// For fronto-parallel surfaces or, with `slanted`, all.
-  Found find(const PointsByRow& points, bool slanted) const {
+  Found find(bool slanted) const {
     std::vector<StretchedView> from_left, from_right;
     SupportOptions support;
     if (slanted) {
@@ -65,18 +82,18 @@ class EdgeSearch {
       support.small_step = 10;  // otherwise step penalties would turn slopes into stairs
       support.large_step = 600;
     }
-    std::vector<int> first;
-    for (const int x : points.x) first.push_back(width_ - 1 - x + least_);
-    CensusCosts costs{points, left_, mirrored_right_, first, Facing::opposite, count_};
+    const SideLevels sides{left_levels_, mirrored_right_levels_, offsets_};
+    CensusCosts costs{points_, left_, mirrored_right_, first_, Facing::opposite, count_};
+    costs.sides = &sides;
     if (slanted) costs.stretched = &from_left;
     Found found{semi_global_disparities(costs, Support::all, support), {}, {}, slanted};
-    for (int p = 0; p < points.size(); ++p) {
+    for (int p = 0; p < points_.size(); ++p) {
       const int index = found.winners[static_cast<std::size_t>(p)].index;
       found.stretch.push_back(slanted ? 1 / best_scale(costs, p, index) : 1);
     }
     from_left.clear();
     if (slanted) from_right = stretched_views(pair_.left, Facing::same);
-    confirm(points, slanted ? &from_right : nullptr, support, found);
+    confirm(slanted ? &from_right : nullptr, support, found);
     return found;
   }
 
@@ -85,24 +102,28 @@ class EdgeSearch {
  private:
   /// Census words refer to the images' own pixel order, so a mirrored image is mirrored back.
   std::vector<StretchedView> stretched_views(const GreyLevels& image, Facing facing) const {
+    const bool is_left = facing == Facing::same;  // in its own tones
     std::vector<StretchedView> views;
     for (const double scale : {1.3, 1.7, 2.1, 2.6, 3.2, 0.74, 0.55, 0.42}) {
-      const auto border = static_cast<int>(scale * border_) + 66;
+      const auto border = static_cast<int>(scale * border_) + 66 + side_border;
       const GreyLevels wide = stretched(image, scale);
-      views.push_back({scale, facing == Facing::same
-                                  ? census_transform(wide, border)
-                                  : mirrored(census_transform(mirrored(wide), border))});
+      const LevelImage levels = mean_levels(wide, border);
+      views.push_back({scale,
+                       is_left ? census_transform(wide, border)
+                               : mirrored(census_transform(mirrored(wide), border)),
+                       is_left ? levels : toned(levels, tones_)});
     }
     return views;
   }
 
   /// Searches from the matched positions of the left points.
-  void confirm(const PointsByRow& points,
-               const std::vector<StretchedView>* stretched_left,
+  void confirm(const std::vector<StretchedView>* stretched_left,
                const SupportOptions& support,
                Found& found) const {
+    const PointsByRow& points = points_;
     std::vector<int> place(points.x.size(), -1), index(static_cast<std::size_t>(width_));
     std::vector<int> x, y, first;
+    std::vector<SideOffset> offsets;  // of the last of the points that match there
     std::vector<int> there(points.x.size(), -1);
     for (std::size_t row = 0; row + 1 < points.row_begin.size(); ++row) {
       std::fill(index.begin(), index.end(), -1);
@@ -111,11 +132,13 @@ class EdgeSearch {
         const int at = points.x[k] - least_ - found.winners[k].index;
         if (at < 0 || at >= width_ || found.winners[k].index >= searched_) continue;
         place[k] = at;
-        index[static_cast<std::size_t>(at)] = 0;
+        index[static_cast<std::size_t>(at)] = p;
       }
       for (int at = 0; at < width_; ++at) {
-        if (index[static_cast<std::size_t>(at)] < 0) continue;
-        index[static_cast<std::size_t>(at)] = static_cast<int>(x.size());
+        int& matched = index[static_cast<std::size_t>(at)];
+        if (matched < 0) continue;
+        offsets.push_back(offsets_[static_cast<std::size_t>(matched)]);
+        matched = static_cast<int>(x.size());
         x.push_back(at);
         y.push_back(static_cast<int>(row));
         first.push_back(at + least_);
@@ -126,7 +149,9 @@ class EdgeSearch {
       }
     }
     const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
+    const SideLevels sides{right_levels_, left_levels_, offsets};
     CensusCosts costs{right, right_, left_, first, Facing::same, count_};
+    costs.sides = &sides;
     costs.stretched = stretched_left;
     const std::vector<Winner> back = semi_global_disparities(
         costs, stretched_left ? Support::all : Support::from_above, support);
@@ -139,8 +164,13 @@ class EdgeSearch {
   }
 
   const RectifiedPair& pair_;
+  const PointsByRow& points_;
+  const std::vector<SideOffset>& offsets_;
   int width_, height_, least_, searched_, count_ = 0, border_ = 0;
+  std::vector<int> first_;  ///< place of every left point in the mirrored right image
   CensusImage left_, right_, mirrored_right_;
+  ToneCurve tones_{};  ///< from the right image to the left one, in which all levels are
+  LevelImage left_levels_, right_levels_, mirrored_right_levels_;
 };
 
 /// Disparities that pass all tests, NaN for the others.
@@ -177,12 +207,13 @@ double unmatched_share(const std::vector<float>& disparity) {
 /// ones slant.
 Attempt attempt_at(const RectifiedPair& pair,
                    const PointsByRow& points,
+                   const std::vector<SideOffset>& sides,
                    const DisparityRange& range,
                    const EdgeMatcherOptions& options) {
-  const EdgeSearch search(pair, range);
+  const EdgeSearch search(pair, points, sides, range);
   Attempt attempt;
   for (bool slanted = false;; slanted = true) {
-    attempt.found = search.find(points, slanted);
+    attempt.found = search.find(slanted);
     attempt.disparity = accepted(points, search, attempt.found, options);
     if (!slanted && unmatched_share(attempt.disparity) > options.slanted_above) continue;
     if (!options.refine) break;
@@ -244,15 +275,17 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
   const auto min_sine = static_cast<float>(std::sin(options.min_angle_rad));
   std::vector<int> x, y;
   std::vector<std::size_t> edge;
+  std::vector<SideOffset> sides;
   for (std::size_t i = 0; i < left_edges.size(); ++i) {
     if (std::abs(left_edges[i].normal.x()) < min_sine) continue;
     x.push_back(left_edges[i].x);
     y.push_back(left_edges[i].y);
     edge.push_back(i);
+    sides.push_back(side_offset(left_edges[i].normal));
   }
   if (edge.empty()) return matches;
   const PointsByRow points = points_by_row(std::move(x), std::move(y), pair.left.height_px);
-  Attempt attempt = attempt_at(pair, points, range, options);
+  Attempt attempt = attempt_at(pair, points, sides, range, options);
   if (attempt.refinement) grow(attempt);
   for (std::size_t k = 0; k < edge.size(); ++k) {
     EdgeMatch& match = matches[edge[k]];

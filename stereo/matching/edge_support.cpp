@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <memory>
 
 #include "stereo/edges/edge_points_by_row.h"
 #include "stereo/matching/census.h"
 #include "stereo/matching/recent_values.h"
+#include "stereo/matching/side_levels.h"
 
 // As in calib/solver/view_kernel.cpp, but for targets with a vector popcount.
 #define HWY_WANT_AVX3_DL
@@ -26,10 +29,35 @@ namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Adds what the levels on both sides differ by, at n positions from `first` on; the loops are
+/// written for auto-vectorisation.
+HWY_INLINE void add_sides(const CensusCosts& at,
+                          int point,
+                          const LevelImage& other,
+                          int first,
+                          int n,
+                          std::int16_t* costs) {
+  const auto k = static_cast<std::size_t>(point);
+  const LevelImage& own = at.sides->own;
+  const auto [dx, dy] = at.sides->offsets[k];
+  for (const int side : {1, -1}) {
+    const int y = std::clamp(at.points.y[k] + side * dy, 0, own.height - 1);
+    const std::int16_t level = own.row(y)[at.points.x[k] + side * dx];
+    const int across = at.facing == Facing::same ? side * dx : -side * dx;
+    const std::uint8_t* const there = other.row(y) + first + across;
+    for (int d = 0; d < n; ++d) {
+      const auto apart = static_cast<std::int16_t>(std::abs(there[d] - level));
+      costs[d] =
+          static_cast<std::int16_t>(costs[d] + side_weight * std::min(apart, most_side_levels));
+    }
+  }
+}
+
 /// Costs of a point against n words of `other` from `first` on.
 HWY_INLINE void distances(const CensusCosts& at,
                           int point,
                           const CensusImage& other,
+                          const LevelImage* levels,
                           int first,
                           int n,
                           std::int16_t* costs) {
@@ -59,9 +87,16 @@ HWY_INLINE void distances(const CensusCosts& at,
     }
     hn::StoreU(hn::TruncateTo(counts, sum), counts, out + d);
   }
+  if (at.sides) add_sides(at, point, *levels, first, n, costs);
   std::fill_n(costs, std::clamp(-first, 0, n), no_place_cost);
   const int end = std::clamp(other.width - first, 0, n);
   std::fill(costs + end, costs + n, no_place_cost);
+}
+
+/// Against the other image as it is.
+HWY_INLINE void plain_costs(const CensusCosts& at, int point, std::int16_t* costs) {
+  distances(at, point, at.other, at.sides ? &at.sides->other : nullptr,
+            at.first_place[static_cast<std::size_t>(point)], at.disparities, costs);
 }
 
 /// The same for a stretched view, at the positions of the unstretched image.
@@ -75,7 +110,7 @@ void stretched_costs(const CensusCosts& at,
   const int end = static_cast<int>(std::ceil(view.scale * (first + at.disparities))) + 1;
   const int n = (end - begin + 31) / 32 * 32;
   costs.resize(static_cast<std::size_t>(n));
-  distances(at, point, view.image, begin, n, costs.data());
+  distances(at, point, view.image, &view.levels, begin, n, costs.data());
   for (int k = 0; k < at.disparities; ++k) {
     const auto place = static_cast<int>(std::lround(view.scale * (first + k))) - begin;
     at_places[k] = costs[static_cast<std::size_t>(place)];
@@ -83,8 +118,7 @@ void stretched_costs(const CensusCosts& at,
 }
 
 HWY_INLINE void costs_of(const CensusCosts& at, int point, std::int16_t* costs) {
-  distances(at, point, at.other, at.first_place[static_cast<std::size_t>(point)], at.disparities,
-            costs);
+  plain_costs(at, point, costs);
   if (!at.stretched) return;
   std::vector<std::int16_t> own, places(static_cast<std::size_t>(at.disparities));
   for (const StretchedView& view : *at.stretched) {
@@ -103,8 +137,7 @@ void census_costs(const CensusCosts& at, int point, std::int16_t* costs) {
 double best_scale(const CensusCosts& at, int point, int index) {
   const auto k = static_cast<std::size_t>(index);
   std::vector<std::int16_t> own, places(static_cast<std::size_t>(at.disparities));
-  distances(at, point, at.other, at.first_place[static_cast<std::size_t>(point)], at.disparities,
-            places.data());
+  plain_costs(at, point, places.data());
   int least = places[k];
   double scale = 1;
   for (const StretchedView& view : *at.stretched) {

@@ -7,11 +7,16 @@
 
 #include "stereo/edges/edge_points_by_row.h"
 #include "stereo/matching/census.h"
+#include "stereo/matching/side_levels.h"
 
 namespace vernier::stereo::internal {
 
-/// Cost of a disparity whose position lies outside the other image.
-constexpr std::int16_t no_place_cost = 560;
+/// What a difference of one grey level on one side of an edge adds to a cost, up to a difference of
+/// so many: beyond it the side shows another surface, behind the edge, as in either camera.
+constexpr std::int16_t side_weight = 3, most_side_levels = 12;
+
+/// Cost of a disparity whose position lies outside the other image: above all others.
+constexpr std::int16_t no_place_cost = 560 + 2 * side_weight * most_side_levels;
 
 /// Whether both images are scanned in the same direction, or the other one is mirrored.
 enum class Facing { same, opposite };
@@ -20,10 +25,15 @@ enum class Facing { same, opposite };
 struct StretchedView {
   double scale = 1;  ///< position p of the other image maps to scale p here
   CensusImage image;
+  LevelImage levels = {};  ///< if costs have sides
 };
 
 /// Matching costs of points at positions in the other image: summed Hamming distances of 3 x 3
-/// census words around both, 0 to 558. The positions of a point are first_place + k, k from 0;
+/// census words around both, 0 to 558, and with `sides` the differences of the grey levels on both
+/// sides of the edge there. The census bears any difference of exposure, but sees no contrast: it
+/// takes one outline of a plain frame for another, which the levels tell apart (both together: Mei
+/// et al., "On building an accurate stereo matching system on graphics hardware", 2011). The
+/// positions of a point are first_place + k, k from 0;
 /// disparities increase with k because the right image is mirrored when searched from the left:
 ///
 ///     from the left:    other = mirrored right,  first place = width − 1 − x + least disparity
@@ -40,6 +50,7 @@ struct CensusCosts {
   /// over all versions, with `stretched_penalty` added to these.
   const std::vector<StretchedView>* stretched = nullptr;
   int stretched_penalty = 30;
+  const SideLevels* sides = nullptr;
 };
 
 /// The scale with the minimum cost of a point at a position, 1 for the unstretched image.

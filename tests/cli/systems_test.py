@@ -108,7 +108,8 @@ class Systems(unittest.TestCase):
         self.addCleanup(EXAMPLES.__setitem__, 'matchers', EXAMPLES['matchers'])
         EXAMPLES['matchers'] = text
         self.check_example('matchers', 2, 'share_not_right', [
-            'edges', 'density', 'bad_1', 'mismatch', 'rms_inlier_px', 'bias_inlier_px', 'z_rms'])
+            'edges', 'density', 'bad_1', 'mismatch', 'rms_inlier_px', 'bias_inlier_px', 'z_rms',
+            'depth_error', 'row_error_px'])
 
     def test_program(self):
         cells = self.check_example('program', 40, 'error', ['off_m'])

@@ -44,7 +44,7 @@ struct Panels {
     options.appearance.texture_contrast = 0;
     options.appearance.seed = 4;
     const ImageScene scene = image_scene(world, options);
-    pair = rendered_pair(scene, rig, view, T_left, {}, {});
+    pair = rendered_pair(scene, rig, rig, view.geometry, T_left, {}, {});
     truth = true_edges(Visibility(world), scene.segments, view);
   }
 };

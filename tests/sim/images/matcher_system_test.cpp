@@ -4,15 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "sim/experiment.h"
 #include "sim/image_systems/matcher_system.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/study/system_under_test.h"
+#include "sim/told_rigs.h"
 #include "tests/support/error_message.h"
 #include "tests/support/small_office.h"
 
@@ -32,13 +37,17 @@ StudyFile matcher_study(const std::string& options) {
       "s.toml");
 }
 
+SystemSetup setup_of(const StudyCell& cell) {
+  return {.cell = cell,
+          .visibility = test::small_office_visibility(),
+          .rig = test::nominal_rig(),
+          .places = std::make_shared<const QueryPlaces>(test::small_office_visibility(),
+                                                        cell.experiment.protocol,
+                                                        cell.experiment.mount.height_m)};
+}
+
 std::unique_ptr<SystemUnderTest> matcher_of_cell(const StudyCell& cell) {
-  return system_kind("matcher").make({.cell = cell,
-                                      .visibility = test::small_office_visibility(),
-                                      .rig = test::nominal_rig(),
-                                      .places = std::make_shared<const QueryPlaces>(
-                                          test::small_office_visibility(), cell.experiment.protocol,
-                                          cell.experiment.mount.height_m)});
+  return system_kind("matcher").make(setup_of(cell));
 }
 
 TEST(MatcherSystem, ScoresWhatIsNotRightOfTheEdgesOfAPair) {
@@ -74,6 +83,50 @@ TEST(MatcherSystem, SeesTheSameEdgesThroughMoreNoise) {
     noisy += b.error;
   }
   EXPECT_LT(quiet, noisy);
+}
+
+TEST(MatcherSystem, IsToldAnotherRigThanTookTheImages) {
+  const StudyFile study = matcher_study("matcher = \"sgbm\"\n");
+  const StudyCell& cell = study.cells[0];
+  const Rig& truth = test::nominal_rig().rig;
+  const auto median = [&](const Rig& told, std::size_t measured) {
+    SystemSetup setup = setup_of(cell);
+    setup.told = given_rig(truth, told, 1, "told");
+    const TrialResult result = system_kind("matcher").make(setup)->run(1);
+    EXPECT_TRUE(result.answered()) << result.failure;
+    return measured == 0 ? result.error : result.measured->at(measured);
+  };
+  constexpr std::size_t error = 0, depth_error = 7, row_error = 8;
+  Rig longer = truth, rolled = truth;
+  longer.T_camera_first[1].t *= 1.02;
+  rolled.T_camera_first[1].R = rotation_from_vector({0.02, 0, 0.01}) * truth.T_camera_first[1].R;
+  // A longer baseline matches as well and makes every depth longer by its 2 %.
+  const double right = median(truth, depth_error);
+  EXPECT_LT(right, 0.02);
+  EXPECT_NEAR(median(longer, depth_error), 0.02, right);
+  EXPECT_NEAR(median(longer, error), median(truth, error), 0.02);
+  EXPECT_LT(median(truth, row_error), 1e-3);
+  EXPECT_LT(median(longer, row_error), 1e-3);
+  // Of images that are not in the same rows, edges that stand upright match all the same.
+  EXPECT_GT(median(rolled, row_error), 3);
+  EXPECT_GT(median(rolled, error), median(truth, error) + 0.1);
+}
+
+TEST(MatcherSystem, CalibrationErrorIsDrawnForEveryTrial) {
+  const StudyFile study =
+      matcher_study("matcher = \"bm\"\n[sweep]\n\"sources.calibration\" = [0, 1, 40]\n");
+  std::vector<double> row_px, found;
+  for (const StudyCell& cell : study.cells) {
+    const TrialResult result = matcher_of_cell(cell)->run(2);
+    ASSERT_TRUE(result.answered()) << result.failure;
+    EXPECT_EQ(result.error, matcher_of_cell(cell)->run(2).error);
+    row_px.push_back(result.measured->at(8));
+    found.push_back(result.error);
+  }
+  EXPECT_LT(row_px[0], 1e-3);
+  EXPECT_GT(row_px[1], row_px[0]);
+  EXPECT_NEAR(row_px[2] / row_px[1], 40, 10);  // the same draw, scaled: to first order
+  EXPECT_GT(found[2], found[0]);
 }
 
 TEST(MatcherSystem, ATrialOfAProgramThatFailsSaysWhy) {

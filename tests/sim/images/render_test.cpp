@@ -12,6 +12,7 @@
 
 #include "calib/camera.h"
 #include "calib/statistics/random.h"
+#include "sim/images/depths.h"
 #include "sim/images/image_scene.h"
 #include "sim/images/pixel_rays.h"
 #include "sim/noise_free_view.h"

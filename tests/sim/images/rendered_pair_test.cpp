@@ -88,11 +88,11 @@ TEST(PairTruth, BothEyesAgreeWhereBothSee) {
 TEST(RenderedPair, RepeatsToTheBitForAnyNumberOfThreads) {
   const Made made;
   PairOptions options;
-  const RenderedPair one =
-      rendered_pair(made.scene, made.rig, made.view, made.T_left, options, {3, 2, 0});
+  const RenderedPair one = rendered_pair(made.scene, made.rig, made.rig, made.view.geometry,
+                                         made.T_left, options, {3, 2, 0});
   options.render.threads = 8;
-  const RenderedPair again =
-      rendered_pair(made.scene, made.rig, made.view, made.T_left, options, {3, 2, 0});
+  const RenderedPair again = rendered_pair(made.scene, made.rig, made.rig, made.view.geometry,
+                                           made.T_left, options, {3, 2, 0});
   EXPECT_EQ(one.left.values, again.left.values);
   EXPECT_EQ(one.right.values, again.right.values);
   EXPECT_EQ(one.rectified.pair.left.values, again.rectified.pair.left.values);
@@ -102,7 +102,8 @@ TEST(RenderedPair, RepeatsToTheBitForAnyNumberOfThreads) {
 
 TEST(RenderedPair, CorrespondingPixelsLookAlike) {
   const Made made;
-  const RenderedPair pair = rendered_pair(made.scene, made.rig, made.view, made.T_left, {}, {});
+  const RenderedPair pair =
+      rendered_pair(made.scene, made.rig, made.rig, made.view.geometry, made.T_left, {}, {});
   const PairTruth truth = pair_truth(made.scene, made.rig, made.view, 1);
   std::vector<double> differences;
   for (int y = 5; y < 475; ++y) {

@@ -32,14 +32,7 @@ using namespace vernier::stereo::internal;
 
 namespace {
 
-GreyLevels random_image(int width, int height, std::uint64_t seed) {
-  RandomStream draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
-  GreyLevels image{width, height, {}};
-  for (int i = 0; i < width * height; ++i) {
-    image.values.push_back(static_cast<float>(std::floor(256 * draws.uniform())));
-  }
-  return image;
-}
+using test::random_image;
 
 TEST(Census, SaysWhichPixelsAreBrighter) {
   const GreyLevels image = random_image(300, 12, 201);

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "stereo/matching/edge_support.h"
+#include "stereo/matching/side_levels.h"
+
+namespace vernier::stereo::internal {
+
+/// For each grey level of one image, that of the same surface in another one, which may have
+/// another exposure or response.
+using ToneCurve = std::array<std::uint8_t, 256>;
+
+/// A grey level of one image and of the other one, where both may be of the same surface.
+struct LevelPair {
+  int from = 0, to = 0;
+};
+
+/// The curve through the mean differences of the pairs in eighths of the range of `from`, of those
+/// with at least 15; linear between, constant beyond them. Means are of the middle half, which
+/// bears wrong pairs. The identity if there are too few.
+ToneCurve tone_curve(const std::vector<LevelPair>& pairs);
+
+/// Pairs of levels beside points, from the other image to the points' own, where the census alone
+/// tells the place in the other image: of about 600 points, those with a cost below 0.7 of the best
+/// one elsewhere. `searched` disparities of `costs` count.
+std::vector<LevelPair> level_pairs(const CensusCosts& costs, const SideLevels& sides, int searched);
+
+LevelImage toned(LevelImage levels, const ToneCurve& curve);
+
+}  // namespace vernier::stereo::internal

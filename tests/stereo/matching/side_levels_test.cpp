@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+// Grey levels on both sides of edges, and the tone curve between two images.
+#include "stereo/matching/side_levels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "stereo/canny_edges.h"
+#include "stereo/edge_matcher.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matching/census.h"
+#include "stereo/matching/edge_support.h"
+#include "stereo/matching/tone_curve.h"
+#include "tests/support/grey_levels.h"
+
+namespace vernier {
+
+using namespace vernier::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
+
+namespace {
+
+using test::clamped;
+using test::random_image;
+
+/// Draws of this file, beside those of random images.
+RandomStream side_draws(std::uint64_t seed) {
+  return RandomStream({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+}
+
+TEST(SideLevels, AreMeansOfNinePixels) {
+  const GreyLevels image = random_image(70, 9, 301);
+  const LevelImage levels = mean_levels(image, 6), turned = mirrored(levels);
+  for (int y = 0; y < 9; ++y) {
+    for (int x = -6; x < 76; ++x) {
+      const int at = std::clamp(x, 0, 69);
+      float sum = 0;
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) sum += clamped(image, at + i, y + j);
+      }
+      EXPECT_NEAR(levels.row(y)[x], sum / 9, 0.5 + 1e-4);
+      EXPECT_EQ(turned.row(y)[69 - x], levels.row(y)[x]);
+    }
+  }
+}
+
+TEST(SideLevels, OffsetsAreTwoPixelsAlongTheNormal) {
+  EXPECT_EQ(side_offset({1, 0}), (SideOffset{2, 0}));
+  EXPECT_EQ(side_offset({-0.7f, 0.7f}), (SideOffset{-1, 1}));
+  EXPECT_EQ(side_offset({1e20f, -std::numeric_limits<float>::infinity()}), (SideOffset{2, -2}));
+  EXPECT_EQ(side_offset({std::numeric_limits<float>::quiet_NaN(), 1}), (SideOffset{0, 2}));
+}
+
+TEST(SideLevels, AddTheirDifferencesToTheCosts) {
+  constexpr int width = 90, height = 12, disparities = 32, border = 40;
+  const GreyLevels left = random_image(width, height, 302),
+                   right = random_image(width, height, 303);
+  const CensusImage own = census_transform(left, border),
+                    other = mirrored(census_transform(right, border));
+  const LevelImage own_levels = mean_levels(left, border),
+                   right_levels = mean_levels(right, border), there = mirrored(right_levels);
+  std::vector<int> x, y, first;
+  std::vector<SideOffset> offsets;
+  RandomStream draws = side_draws(304);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; column += 1 + static_cast<int>(draws.below(9))) {
+      x.push_back(column);
+      y.push_back(row);
+      first.push_back(width - 1 - column);
+      offsets.push_back(
+          {static_cast<int>(draws.below(5)) - 2, static_cast<int>(draws.below(5)) - 2});
+    }
+  }
+  const PointsByRow points = points_by_row(x, y, height);
+  const SideLevels sides{own_levels, there, offsets};
+  CensusCosts plain{points, own, other, first, Facing::opposite, disparities}, both = plain;
+  both.sides = &sides;
+  std::vector<std::int16_t> of_census(disparities), costs(disparities);
+  for (int p = 0; p < points.size(); ++p) {
+    const auto k = static_cast<std::size_t>(p);
+    census_costs(plain, p, of_census.data());
+    census_costs(both, p, costs.data());
+    for (int d = 0; d < disparities; ++d) {
+      const int at = points.x[k] - d;
+      int cost = of_census[static_cast<std::size_t>(d)];
+      if (at >= 0) {
+        for (const int side : {1, -1}) {
+          const int row = std::clamp(points.y[k] + side * offsets[k][1], 0, height - 1);
+          const int apart = own_levels.row(row)[points.x[k] + side * offsets[k][0]] -
+                            right_levels.row(row)[at + side * offsets[k][0]];
+          cost += side_weight * std::min<int>(std::abs(apart), most_side_levels);
+        }
+      }
+      ASSERT_EQ(costs[static_cast<std::size_t>(d)], cost) << p << " " << d;
+      ASSERT_LE(cost, no_place_cost);
+    }
+  }
+}
+
+TEST(ToneCurve, IsTheMedianDifference) {
+  RandomStream draws = side_draws(305);
+  std::vector<LevelPair> pairs;
+  const auto brighter = [](double level) { return 30 + 0.8 * level; };
+  for (int i = 0; i < 900; ++i) {
+    const int from = 20 + static_cast<int>(draws.below(200));
+    const bool is_wrong = draws.uniform() < 0.3;
+    pairs.push_back({from, is_wrong ? static_cast<int>(draws.below(256))
+                                    : static_cast<int>(std::lround(brighter(from)))});
+  }
+  const ToneCurve curve = tone_curve(pairs);
+  for (std::size_t level = 40; level < 200; ++level) {
+    EXPECT_NEAR(curve[level], brighter(static_cast<double>(level)), 4) << level;
+  }
+  EXPECT_TRUE(std::is_sorted(curve.begin(), curve.end()));
+  // Too few pairs say nothing.
+  const ToneCurve none = tone_curve({pairs.begin(), pairs.begin() + 14});
+  for (std::size_t level = 0; level < 256; ++level) EXPECT_EQ(none[level], level);
+}
+
+/// Upright bars of equal width and distance, but of different greys: by the signs of the steps
+/// alone, each is like all others. Below them is a strip of texture.
+GreyLevels bars(int width, int shift_px, double gamma) {
+  constexpr int period = 24, bar = 9;
+  GreyLevels image{width, 90, {}};
+  const GreyLevels strip = random_image(width, 90, 307);
+  RandomStream draws = side_draws(306);
+  std::vector<double> greys;
+  for (int i = 0; i < 2 + width / period; ++i) greys.push_back(110 + 100 * draws.uniform());
+  for (int y = 0; y < 90; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const int at = x + shift_px;
+      double grey = at % period < bar ? greys[static_cast<std::size_t>(at / period)] : 60;
+      if (y >= 60) grey = 40 + 0.7 * strip(at / 3, y / 3);
+      image.values.push_back(static_cast<float>(255 * std::pow(grey / 255, gamma)));
+    }
+  }
+  return image;
+}
+
+TEST(EdgeMatcher, TellsBarsByTheirGreys) {
+  constexpr int disparity_px = 48 - 14;  // one and a half periods: others match as well
+  for (const double gamma : {1.0, 1.4}) {
+    const RectifiedPair pair{bars(600, 0, 1), bars(600, disparity_px, gamma)};
+    const std::vector<EdgePoint> edges = canny_edges(pair.left);
+    const std::vector<EdgeMatch> matches = match_edges(pair, edges, {0, 64});
+    int inner = 0, right = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (edges[i].x < 80 || edges[i].y > 50) continue;
+      ++inner;
+      right += std::abs(matches[i].at.disparity_px - disparity_px) < 0.5;
+    }
+    ASSERT_GT(inner, 1500);
+    EXPECT_GT(right, 0.95 * inner) << gamma;
+  }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -116,6 +116,12 @@ std::string TomlReader::text(const toml::node& node, const std::string& what) co
   return text;
 }
 
+std::string TomlReader::file_name(const toml::node& node, const std::string& what) const {
+  std::string name = text(node, what);
+  if (name.empty()) fail(node, what + " is empty", "name a file");
+  return name;
+}
+
 double TomlReader::number(const toml::node& node, const std::string& what) const {
   double value = 0;
   if (const auto* real = node.as_floating_point()) {

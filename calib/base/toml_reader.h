@@ -45,6 +45,8 @@ class TomlReader {
                              const char* key,
                              const std::string& owner) const;
   std::string text(const toml::node& node, const std::string& what) const;
+  /// The same, not empty: the name of a file, or of one that is shipped.
+  std::string file_name(const toml::node& node, const std::string& what) const;
   double number(const toml::node& node, const std::string& what) const;
   std::int64_t integer(const toml::node& node, const std::string& what) const;
   const toml::array& list(const toml::node& node, const std::string& what) const;

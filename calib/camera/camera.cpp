@@ -114,7 +114,8 @@ std::optional<Eigen::Vector2d> try_project(const Camera& camera, const Eigen::Ve
   if (!(camera.f_px() > 0 && camera.ax() > 0 && point.z() > 0)) return std::nullopt;
   ProjectionJacobian J;
   const Eigen::Vector2d pixel = project(camera, point, J);
-  if (!pixel.allFinite() || !(J.point.leftCols<2>().determinant() > 0)) return std::nullopt;
+  const Eigen::Matrix2d by_x = J.point.leftCols<2>();
+  if (!pixel.allFinite() || !(by_x.determinant() > 0 && by_x.trace() > 0)) return std::nullopt;
   return pixel;
 }
 

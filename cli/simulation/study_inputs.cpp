@@ -168,13 +168,21 @@ void load(const StudyInput& input, const fs::path& file, Study& study, Session& 
   }
 }
 
+void check_covariance(const RigEstimate& rig, const std::string& place) {
+  if (rig.covariance) return;
+  throw Error(
+      place, "the rig has no covariance to draw what is told of it from",
+      "calibrate it with vernier calibrate, or set sources.calibration = 0: it is then told "
+      "exactly");
+}
+
 void check_covariances(const Study& study, const fs::path& rig) {
   for (const StudyCell& cell : study.file.cells) {
     if (!(cell.experiment.sources.calibration > 0) || cell.told.calibration) continue;
     if (cell.told.truth.empty()) {
-      required_covariance(study.rig, rig.string());
+      check_covariance(study.rig, rig.string());
     } else if (cell.told.error == ToldSettings::Error::drawn) {
-      required_covariance(study.told_rigs.at(cell.told.file).estimate, cell.told.file);
+      check_covariance(study.told_rigs.at(cell.told.file).estimate, cell.told.file);
     }
   }
 }

@@ -223,7 +223,7 @@ std::string rig_text(const Study& study) {
   const ToldSettings& told = study.file.cells[0].told;
   if (told.calibration) {
     return fmt::format("true rig {}; told: a fresh calibration for each trial{}\n", study.file.rig,
-                       system_of(study.file).name == "localiser" ? " and each map" : "");
+                       study.file.cells[0].system.is_localiser() ? " and each map" : "");
   }
   if (told.truth.empty()) {
     return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));

@@ -97,29 +97,49 @@ double share_not_right(const EdgeMetrics& edges) {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Median of |z / z_true − 1| over the edges whose disparity is within 1 px of the truth, or within
-/// a pixel of a discontinuity of either surface's; z by the told rig. NaN if there are none.
+/// Pixel of the left image that an edge's disparity belongs to: its own or, at a discontinuity,
+/// that of the 3 x 3 whose true disparity is next to it.
+std::size_t pixel_of(const EdgePoint& edge,
+                     const stereo::TruthAtEdge& at,
+                     const stereo::DisparityMap& map,
+                     float disparity_px) {
+  const auto index = [&map](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width_px) +
+           static_cast<std::size_t>(x);
+  };
+  const int column = stereo::internal::column_of(edge, map, "truth");
+  std::size_t best = index(column, edge.y);
+  if (!at.discontinuity) return best;
+  const stereo::internal::MapWindow near(map, column, edge.y, 1);
+  float least_px = std::numeric_limits<float>::infinity();
+  for (int y = near.y0; y <= near.y1; ++y) {
+    for (int x = near.x0; x <= near.x1; ++x) {
+      const float off_px = std::abs(map(x, y) - disparity_px);
+      if (!(off_px < least_px)) continue;
+      least_px = off_px;
+      best = index(x, y);
+    }
+  }
+  return best;
+}
+
+/// Median of |z_true / z − 1| = |d z_true / (f B) − 1| over the edges that both cameras see and
+/// whose disparity d is right to 1 px; f, B and z of the told rig. NaN if there are none.
 double median_depth_error(const stereo::RectifiedGeometry& told,
                           const ToldTruth& truth,
                           const std::vector<EdgePoint>& edges,
+                          const std::vector<stereo::TruthAtEdge>& at_edges,
                           const std::vector<stereo::EdgeDisparity>& found) {
   const stereo::DisparityMap& map = truth.stereo.disparity;
   std::vector<double> errors;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (!found[i].matched()) continue;
-    const stereo::internal::MapWindow near(map, stereo::internal::column_of(edges[i], map, "truth"),
-                                           edges[i].y, 1);
-    double least_px = 1, z = unknown;
-    for (int y = near.y0; y <= near.y1; ++y) {
-      for (int x = near.x0; x <= near.x1; ++x) {
-        const double off_px = std::abs(double{map(x, y)} - found[i].disparity_px);
-        if (!(off_px < least_px)) continue;
-        least_px = off_px;
-        z = truth.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width_px) +
-                          static_cast<std::size_t>(x)];
-      }
-    }
-    if (std::isfinite(z)) errors.push_back(std::abs(told.depth_m(found[i].disparity_px) / z - 1));
+    const stereo::TruthAtEdge& at = at_edges[i];
+    const float d = found[i].disparity_px;
+    if (!at.known || at.occluded || !found[i].matched()) continue;
+    const std::size_t pixel = pixel_of(edges[i], at, map, d);
+    if (!(std::abs(map.values[pixel] - d) <= 1)) continue;
+    const double z_true = truth.depth_m[pixel];
+    errors.push_back(std::abs(d / told.disparity_px(z_true) - 1));
   }
   return errors.empty() ? unknown : quantile(std::move(errors), 0.5, QuantileKind::linear);
 }
@@ -189,7 +209,8 @@ class MatcherSystem : public SystemUnderTest {
     // A program's own time is not known: it counts by the wall, with what is done beside it.
     result.cpu_ms = cell_.system.command().empty() ? clock.cpu_ms() : result.wall_ms;
     score(stereo::evaluate(edges, found, at_edges, pair.left.width_px),
-          median_depth_error(geometry, truth, edges, found), rms_row_error(truth), result);
+          median_depth_error(geometry, truth, edges, at_edges, found), rms_row_error(truth),
+          result);
   }
 
   static void score(const MatcherScore& score,
@@ -281,6 +302,7 @@ SystemKind matcher_kind() {
       .uses_protocol = true,
       .tells_rigs = true,
       .uses_opencv = true,
+      .version = 1,
       .make = [](const SystemSetup& setup) { return std::make_unique<MatcherSystem>(setup); }};
 }
 

@@ -71,12 +71,16 @@ PairTruth pair_truth(const ImageScene& scene,
 
 stereo::DisparityRange search_range(const stereo::DisparityMap& truth) {
   constexpr float margin_px = 2;
-  float largest = 0;
-  for (const float d : truth.values) {
-    if (d > largest) largest = d;  // false for an unknown one
+  float least = 0, largest = 0;
+  for (const float d : truth.values) {  // comparisons are false for an unknown one
+    if (d > largest) largest = d;
+    if (d < least) least = d;
   }
   const int most = std::max(16, truth.width_px / 2);
-  return {0, std::min(most, static_cast<int>(std::ceil(largest + margin_px)))};
+  const auto bounded = [most](float size) {
+    return static_cast<int>(std::ceil(std::min(size + margin_px, static_cast<float>(most))));
+  };
+  return {least < 0 ? -bounded(-least) : 0, bounded(largest)};
 }
 
 }  // namespace vernier::sim::internal

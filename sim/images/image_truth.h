@@ -40,7 +40,8 @@ PairTruth pair_truth(const ImageScene& scene,
                      const RectifiedView& view,
                      int threads);
 
-/// Disparities to search: from 0 to 2 px above the largest true one, at most half the width.
+/// Disparities to search: from 0, or 2 px below the smallest true one if that is negative, to 2 px
+/// above the largest; at most half the width either way.
 stereo::DisparityRange search_range(const stereo::DisparityMap& truth);
 
 }  // namespace vernier::sim::internal

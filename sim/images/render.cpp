@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,7 +27,6 @@ namespace vernier::sim::internal {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::Vector3f;
 
 namespace {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/images/told_truth.h"
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -46,15 +46,19 @@ std::vector<Vector2d> left_rays(const Rig& truth,
   return rays;
 }
 
-/// Rectified right pixel of a point of the right camera's frame; nullopt outside its image.
+/// Rectified right pixel of a point of the right camera's frame, in its image or not; nullopt if
+/// the rigs cannot image it.
 std::optional<Vector2d> right_pixel(const Rig& truth,
                                     const Rig& told,
                                     const stereo::RectifiedGeometry& geometry,
-                                    const Vector3d& x_right) {
+                                    const Vector3d& x_right,
+                                    bool& has_image) {
   const Camera& camera = truth.cameras[1];
   const auto raw_px = try_project(camera, x_right);
-  if (!raw_px || !in_image(camera, *raw_px)) return std::nullopt;
-  return stereo::rectified_pixel(told, geometry, 1, *raw_px);
+  const auto pixel = raw_px ? stereo::rectified_pixel(told, geometry, 1, *raw_px) : std::nullopt;
+  has_image = pixel && in_image(camera, *raw_px) && pixel->y() >= 0 &&
+              pixel->y() <= geometry.size_px[1] - 1;
+  return pixel;
 }
 
 }  // namespace
@@ -83,13 +87,15 @@ ToldTruth told_truth(const ImageScene& scene,
     const double depth_m = (geometry.turn.R_rectified_left * x_left).z();
     result.depth_m[i] = static_cast<float>(depth_m);
     const Vector3d x_right = T_right_left * x_left;
-    const auto seen = right_pixel(truth, told, geometry, x_right);
-    if (!seen) {  // the geometry's own disparity, of a point that the right image does not have
+    bool has_image = false;
+    const auto seen = right_pixel(truth, told, geometry, x_right, has_image);
+    if (!seen) {  // the geometry's own disparity
       map.values[i] = static_cast<float>(geometry.disparity_px(depth_m));
       continue;
     }
     map.values[i] = static_cast<float>(static_cast<double>(i % width) - seen->x());
     result.vertical_px[i] = static_cast<float>(seen->y() - static_cast<double>(i / width));
+    if (!has_image) continue;
     right_rays[i] = x_right.head<2>() / x_right.z();
     right_z[i] = x_right.z();
   }

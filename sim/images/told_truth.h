@@ -16,8 +16,9 @@ namespace vernier::sim::internal {
 /// where the two images of what a left pixel sees are in fact, in the told geometry. They need not
 /// be in one row. Per pixel of the left image, row-major.
 struct ToldTruth {
-  /// u_left − u_right. Occluded: the right camera does not have the point in its image, or a
-  /// surface of a disparity more than 1 px larger hides it.
+  /// u_left − u_right. Occluded: by the rules of stereo_truth for the left map alone, if the right
+  /// camera does not have the point in its image or the rectified one, or if a surface of a
+  /// disparity more than 1 px larger hides it.
   stereo::StereoTruth stereo;
   std::vector<float> vertical_px;  ///< v_right − v_left; NaN where unknown
   /// Along the axis of the told rectified left camera, in metres: what the disparity above should

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "calib/pose.h"
 #include "sim/images/image_scene.h"

@@ -79,7 +79,7 @@ void StudyReader::read_world(const toml::table& root, StudyCell& cell) const {
   const auto* world = section(root, "world");
   if (!world) return;
   check_keys(*world, {"file", "visibility"}, "[world]");
-  if (const auto* file = world->get("file")) cell.world = text(*file, "world.file");
+  if (const auto* file = world->get("file")) cell.world = file_name(*file, "world.file");
   if (const auto* visibility = world->get("visibility")) {
     const std::string method = text(*visibility, "world.visibility");
     if (method != "exact" && method != "view_sets") {
@@ -111,7 +111,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   const toml::node* node = own ? own->get("file") : nullptr;
   if (!node) return {};
   std::filesystem::path file =
-      instead.empty() ? std::filesystem::path(place()).parent_path() / text(*node, "sources.file")
+      instead.empty() ? std::filesystem::path(place()).parent_path() / file_name(*node, "sources.file")
                       : instead;
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) {

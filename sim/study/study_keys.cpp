@@ -217,7 +217,12 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   if (const std::string& command = cell.experiment.sources.command; !command.empty()) {
     key[source_files] = fingerprint(files_named_in(command));
   }
-  if (!cell.system.is_localiser()) return key.dump();
+  if (!cell.system.is_localiser()) {
+    if (const int version = system_kind(cell.system.name).version; version > 0) {
+      key["system.version"] = version;
+    }
+    return key.dump();
+  }
   if (cell.experiment.method == "lines") key["localiser.version"] = lines_version;
   if (cell.experiment.method == "program") {
     key[localiser_files] = fingerprint(files_named_in(cell.experiment.localiser.command));

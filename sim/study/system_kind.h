@@ -78,7 +78,8 @@ struct SystemKind {
   bool calibrates = false;
   bool is_program = false;  ///< a user's program and no more: one start tries it for all its cells
   bool uses_opencv =
-      false;  ///< which is then held to one thread, as a study has threads of its own
+      false;        ///< which is then held to one thread, as a study has threads of its own
+  int version = 0;  ///< of its results: raised when the same settings give others
   /// Null for localisers, which the engine runs itself, as their cells share maps.
   std::function<std::unique_ptr<SystemUnderTest>(const SystemSetup&)> make = {};
 

@@ -118,11 +118,8 @@ ToldSettings ToldReader::read(const toml::table& root) const {
   ToldSettings settings;
   if (const auto* rig = part(root, "rig")) {
     check_keys(*rig, {"file", "truth", "error"}, "[rig]");
-    if (const auto* node = rig->get("file")) settings.file = text(*node, "rig.file");
-    if (const auto* node = rig->get("truth")) {
-      settings.truth = text(*node, "rig.truth");
-      if (settings.truth.empty()) fail(*node, "rig.truth is empty", "name a rig file");
-    }
+    if (const auto* node = rig->get("file")) settings.file = file_name(*node, "rig.file");
+    if (const auto* node = rig->get("truth")) settings.truth = file_name(*node, "rig.truth");
     if (const auto* node = rig->get("error")) {
       const std::string word = text(*node, "rig.error");
       if (word != "drawn" && word != "given") {

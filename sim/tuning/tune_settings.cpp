@@ -104,7 +104,7 @@ class TuneReader : private SettingsReader {
   void read_worlds(const toml::node& node, TuneSettings& settings) const {
     const std::vector<std::string> searched = worlds_of(study_);
     for (const toml::node& one : list(node, "tune.confirm_worlds")) {
-      const std::string world = text(one, "tune.confirm_worlds");
+      const std::string world = file_name(one, "a name in tune.confirm_worlds");
       if (std::find(searched.begin(), searched.end(), world) != searched.end()) {
         fail(one, "tune.confirm_worlds: " + in_quotes(world) + " is searched",
              "name worlds that the study does not use");

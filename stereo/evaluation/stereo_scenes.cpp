@@ -127,7 +127,7 @@ class SceneReader : private TomlReader {
   }
 
   std::filesystem::path file_of(const toml::node& node, const char* key) const {
-    std::filesystem::path file = folder_ / text(node, key);
+    std::filesystem::path file = folder_ / file_name(node, key);
     std::error_code unknown;
     if (!std::filesystem::exists(file, unknown) || std::filesystem::is_directory(file, unknown)) {
       fail(node, std::string(key) + ": no such file: " + file.string(),

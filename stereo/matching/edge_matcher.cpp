@@ -68,8 +68,9 @@ class EdgeSearch {
     tones_ =
         tone_curve(level_pairs({points, left_, mirrored_right_, first_, Facing::opposite, count_},
                                {left_levels_, mirrored_right, sides}, searched_));
-    right_levels_ = toned(right, tones_);
-    mirrored_right_levels_ = toned(mirrored_right, tones_);
+    if (!tones_) return;
+    right_levels_ = toned(right, *tones_);
+    mirrored_right_levels_ = toned(mirrored_right, *tones_);
   }
 
   /// For fronto-parallel surfaces or, with `slanted`, all.
@@ -84,7 +85,7 @@ class EdgeSearch {
     }
     const SideLevels sides{left_levels_, mirrored_right_levels_, offsets_};
     CensusCosts costs{points_, left_, mirrored_right_, first_, Facing::opposite, count_};
-    costs.sides = &sides;
+    if (tones_) costs.sides = &sides;
     if (slanted) costs.stretched = &from_left;
     Found found{semi_global_disparities(costs, Support::all, support), {}, {}, slanted};
     for (int p = 0; p < points_.size(); ++p) {
@@ -107,11 +108,11 @@ class EdgeSearch {
     for (const double scale : {1.3, 1.7, 2.1, 2.6, 3.2, 0.74, 0.55, 0.42}) {
       const auto border = static_cast<int>(scale * border_) + 66 + side_border;
       const GreyLevels wide = stretched(image, scale);
-      const LevelImage levels = mean_levels(wide, border);
+      const LevelImage levels = tones_ ? mean_levels(wide, border) : LevelImage{};
       views.push_back({scale,
                        is_left ? census_transform(wide, border)
                                : mirrored(census_transform(mirrored(wide), border)),
-                       is_left ? levels : toned(levels, tones_)});
+                       is_left || !tones_ ? levels : toned(levels, *tones_)});
     }
     return views;
   }
@@ -151,7 +152,7 @@ class EdgeSearch {
     const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
     const SideLevels sides{right_levels_, left_levels_, offsets};
     CensusCosts costs{right, right_, left_, first, Facing::same, count_};
-    costs.sides = &sides;
+    if (tones_) costs.sides = &sides;
     costs.stretched = stretched_left;
     const std::vector<Winner> back = semi_global_disparities(
         costs, stretched_left ? Support::all : Support::from_above, support);
@@ -169,7 +170,8 @@ class EdgeSearch {
   int width_, height_, least_, searched_, count_ = 0, border_ = 0;
   std::vector<int> first_;  ///< place of every left point in the mirrored right image
   CensusImage left_, right_, mirrored_right_;
-  ToneCurve tones_{};  ///< from the right image to the left one, in which all levels are
+  /// From the right image to the left one, in which all levels are; none: levels are not compared.
+  std::optional<ToneCurve> tones_;
   LevelImage left_levels_, right_levels_, mirrored_right_levels_;
 };
 

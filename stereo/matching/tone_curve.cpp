@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,11 +64,10 @@ double difference_at(const std::vector<Knot>& knots, double level) {
 
 }  // namespace
 
-ToneCurve tone_curve(const std::vector<LevelPair>& pairs) {
+std::optional<ToneCurve> tone_curve(const std::vector<LevelPair>& pairs) {
   const std::vector<Knot> knots = knots_of(pairs);
+  if (knots.empty()) return std::nullopt;
   ToneCurve curve{};
-  std::iota(curve.begin(), curve.end(), std::uint8_t{0});
-  if (knots.empty()) return curve;
   for (std::size_t level = 0; level < curve.size(); ++level) {
     const auto at = static_cast<double>(level);
     curve[level] =
@@ -82,7 +81,7 @@ std::vector<LevelPair> level_pairs(const CensusCosts& costs,
                                    int searched) {
   constexpr int points = 600, beside = 2;
   constexpr double distinct = 0.7;
-  const int step = std::max(1, costs.points.size() / points);
+  const int step = costs.points.size() / points + 1;
   std::vector<std::int16_t> at(static_cast<std::size_t>(costs.disparities));
   std::vector<LevelPair> pairs;
   for (int p = 0; p < costs.points.size(); p += step) {
@@ -90,12 +89,12 @@ std::vector<LevelPair> level_pairs(const CensusCosts& costs,
     census_costs(costs, p, at.data());
     const int best =
         static_cast<int>(std::min_element(at.begin(), at.begin() + searched) - at.begin());
-    int next = std::numeric_limits<std::int16_t>::max();
+    int next = no_place_cost;
     for (int d = 0; d < searched; ++d) {
       if (std::abs(d - best) > beside) next = std::min<int>(next, at[static_cast<std::size_t>(d)]);
     }
     const int cost = at[static_cast<std::size_t>(best)];
-    if (cost == no_place_cost || cost >= distinct * next) continue;
+    if (next == no_place_cost || cost >= distinct * next) continue;
     const auto [x, y] = sides.offsets[k];
     const int there = costs.first_place[k] + best;
     for (const int side : {1, -1}) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "stereo/matching/edge_support.h"
@@ -22,12 +23,12 @@ struct LevelPair {
 
 /// The curve through the mean differences of the pairs in eighths of the range of `from`, of those
 /// with at least 15; linear between, constant beyond them. Means are of the middle half, which
-/// bears wrong pairs. The identity if there are too few.
-ToneCurve tone_curve(const std::vector<LevelPair>& pairs);
+/// bears wrong pairs. std::nullopt if there are too few: nothing is known of the tones.
+std::optional<ToneCurve> tone_curve(const std::vector<LevelPair>& pairs);
 
 /// Pairs of levels beside points, from the other image to the points' own, where the census alone
-/// tells the place in the other image: of about 600 points, those with a cost below 0.7 of the best
-/// one elsewhere. `searched` disparities of `costs` count.
+/// tells the place in the other image: of at most 600 points, those with a cost below 0.7 of the
+/// best one elsewhere in the image. `searched` disparities of `costs` count.
 std::vector<LevelPair> level_pairs(const CensusCosts& costs, const SideLevels& sides, int searched);
 
 LevelImage toned(LevelImage levels, const ToneCurve& curve);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "calib/error.h"
@@ -57,6 +58,16 @@ TEST_P(EveryModel, UnprojectInvertsProject) {
   }
 }
 
+TEST_P(EveryModel, TryProjectGivesWhatACameraImages) {
+  Camera camera = this->camera();
+  const Eigen::Vector3d point(0.2, -0.1, 1.5);
+  EXPECT_EQ(try_project(camera, point), project(camera, point));
+  EXPECT_EQ(try_project(camera, -point), std::nullopt);
+  EXPECT_EQ(try_project(camera, {0.2, -0.1, 0}), std::nullopt);
+  camera.parameters[0] = -camera.parameters[0];
+  EXPECT_EQ(try_project(camera, point), std::nullopt);
+}
+
 TEST_P(EveryModel, NamesItself) {
   EXPECT_EQ(model_name(camera_model(GetParam())), GetParam());
   EXPECT_EQ(parameter_names(camera().model).size(),
@@ -81,6 +92,10 @@ TEST(Camera, UnprojectRefusesAFoldedImage) {
   Camera camera = test::stereo_rig().cameras[0];
   camera.parameters[4] = -2;  // folds at r = 0.41, inside the image
   EXPECT_THROW(unproject(camera, {0, 0}), Error);
+  EXPECT_TRUE(try_project(camera, {0.38, 0, 1}).has_value());
+  for (const double beyond : {0.45, 0.6, 0.9, 3.0}) {  // 1 - 2 r² is negative from 0.71 on
+    EXPECT_EQ(try_project(camera, {beyond, 0, 1}), std::nullopt) << beyond;
+  }
 }
 
 TEST(Camera, RadialModelsAreOpenCv8WithZeros) {

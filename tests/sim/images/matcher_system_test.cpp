@@ -3,6 +3,7 @@
 // Matchers as systems under test.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -89,27 +90,40 @@ TEST(MatcherSystem, IsToldAnotherRigThanTookTheImages) {
   const StudyFile study = matcher_study("matcher = \"sgbm\"\n");
   const StudyCell& cell = study.cells[0];
   const Rig& truth = test::nominal_rig().rig;
-  const auto median = [&](const Rig& told, std::size_t measured) {
+  const std::vector<std::string>& names = system_kind("matcher").measured;
+  const auto index_of = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const auto tried = [&](const Rig& told) {
     SystemSetup setup = setup_of(cell);
     setup.told = given_rig(truth, told, 1, "told");
-    const TrialResult result = system_kind("matcher").make(setup)->run(1);
+    TrialResult result = system_kind("matcher").make(setup)->run(1);
     EXPECT_TRUE(result.answered()) << result.failure;
-    return measured == 0 ? result.error : result.measured->at(measured);
+    return result;
   };
-  constexpr std::size_t error = 0, depth_error = 7, row_error = 8;
-  Rig longer = truth, rolled = truth;
+  const auto measured = [&](const TrialResult& result, const std::string& name) {
+    return result.measured->at(index_of(name));
+  };
+  Rig longer = truth, rolled = truth, turned = truth;
   longer.T_camera_first[1].t *= 1.02;
   rolled.T_camera_first[1].R = rotation_from_vector({0.02, 0, 0.01}) * truth.T_camera_first[1].R;
+  turned.T_camera_first[1].R = rotation_from_vector({0, 0.05, 0}) * truth.T_camera_first[1].R;
+  const TrialResult exact = tried(truth), scaled = tried(longer), off = tried(rolled),
+                    apart = tried(turned);
   // A longer baseline matches as well and makes every depth longer by its 2 %.
-  const double right = median(truth, depth_error);
+  const double right = measured(exact, "depth_error");
   EXPECT_LT(right, 0.02);
-  EXPECT_NEAR(median(longer, depth_error), 0.02, right);
-  EXPECT_NEAR(median(longer, error), median(truth, error), 0.02);
-  EXPECT_LT(median(truth, row_error), 1e-3);
-  EXPECT_LT(median(longer, row_error), 1e-3);
+  EXPECT_NEAR(measured(scaled, "depth_error"), 0.02, right);
+  EXPECT_NEAR(scaled.error, exact.error, 0.02);
+  EXPECT_LT(measured(exact, "row_error_px"), 1e-3);
+  EXPECT_LT(measured(scaled, "row_error_px"), 1e-3);
   // Of images that are not in the same rows, edges that stand upright match all the same.
-  EXPECT_GT(median(rolled, row_error), 3);
-  EXPECT_GT(median(rolled, error), median(truth, error) + 0.1);
+  EXPECT_GT(measured(off, "row_error_px"), 3);
+  EXPECT_GT(off.error, exact.error + 0.1);
+  // A turn about the vertical shifts all disparities, by more than the largest or below 0: they are
+  // searched where they are, and found, but tell no depth.
+  EXPECT_LT(apart.error, exact.error + 0.1);
+  EXPECT_GT(measured(apart, "depth_error"), 0.2);
 }
 
 TEST(MatcherSystem, CalibrationErrorIsDrawnForEveryTrial) {

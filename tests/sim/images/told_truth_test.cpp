@@ -79,7 +79,7 @@ TEST(ToldTruth, IsWhereTheTrueRigSeesAPoint) {
   const TrueView seen;
   const Rig wrong = wrong_rig();
   const stereo::RectifiedGeometry geometry = stereo::rectified_geometry(wrong);
-  const ToldTruth told = told_truth(seen.scene, seen.truth, wrong, geometry, seen.T_left, 2);
+  const ToldTruth told = told_truth(seen.scene, seen.truth, wrong, geometry, seen.T_left, 1);
   const stereo::DisparityMap& map = told.stereo.disparity;
   // From the true camera's own pixels, whose depths are exact.
   const Camera& left = seen.truth.cameras[0];

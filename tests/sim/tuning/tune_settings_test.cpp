@@ -53,6 +53,20 @@ TEST(TuneSettings, HaveTheirDefaults) {
   EXPECT_EQ(settings.confirm_trials, 120);
 }
 
+// A world without a name is none; a study has named files too.
+TEST(TuneSettings, NamesOfFilesAreNotEmpty) {
+  EXPECT_NE(refusal("[tune]\nconfirm_worlds = [\"c\", \"\"]\n")
+                .find("a name in tune.confirm_worlds is empty; name a file"),
+            std::string::npos);
+  for (const std::string key : {"world.file", "rig.file", "rig.truth", "sources.file"}) {
+    const std::string section = key.substr(0, key.find('.')), name = key.substr(key.find('.') + 1);
+    EXPECT_NE(refusal("", "[study]\n[" + section + "]\n" + name + " = \"\"\n")
+                  .find("t.toml:3: " + key + " is empty; name a file"),
+              std::string::npos)
+        << key;
+  }
+}
+
 TEST(TuneSettings, ConditionsMakeNoCandidates) {
   const StudyFile file = parse_study(study_text, "t.toml");
   TuneSettings settings;

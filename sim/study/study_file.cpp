@@ -110,9 +110,9 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   const toml::table* own = section(root, "sources");
   const toml::node* node = own ? own->get("file") : nullptr;
   if (!node) return {};
-  std::filesystem::path file =
-      instead.empty() ? std::filesystem::path(place()).parent_path() / file_name(*node, "sources.file")
-                      : instead;
+  std::filesystem::path file = instead.empty() ? std::filesystem::path(place()).parent_path() /
+                                                     file_name(*node, "sources.file")
+                                               : instead;
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) {
     fail(*node, "sources.file: no such file: " + file.string(),

@@ -18,6 +18,9 @@ struct EdgeMatcherOptions {
   /// Fraction of unmatched points, or of refined points with a disparity gradient above 0.2 px per
   /// pixel, above which slanted surfaces are searched as well.
   double slanted_above = 0.3;
+  /// Compare grey levels beside edges too: tells the outlines of plain frames and bars from one
+  /// another, and mistakes the periods of a pattern where its lighting differs between the images.
+  bool compare_levels = false;
   bool refine = true;      ///< least squares refinement, with a standard deviation for each point
   double min_score = 0.9;  ///< minimum refined ZNCC; else the support parabola is kept …
   double min_slanted_score = 0.7;   ///< minimum ZNCC for slanted surfaces
@@ -36,8 +39,9 @@ struct EdgeMatch {
 /// Vernier's own sparse matcher:
 ///
 ///  1. costs of every left edge point at every disparity: 3 x 3 census words
-///     (stereo/matching/census.h), and the grey levels on both sides of the edge, the right image's
-///     by a tone curve that is found from the pair (stereo/matching/tone_curve.h);
+///     (stereo/matching/census.h) and, with `compare_levels`, the grey levels on both sides of the
+///     edge, the right image's by a tone curve that is found from the pair
+///     (stereo/matching/tone_curve.h);
 ///  2. semi-global support between edge points (stereo/matching/edge_support.h);
 ///  3. the same from the matched positions in the right image; a point is kept if both directions
 ///     agree within one disparity, its best disparity leads any other by `min_margin`, and at least

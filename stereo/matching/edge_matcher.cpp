@@ -47,7 +47,8 @@ class EdgeSearch {
   EdgeSearch(const RectifiedPair& pair,
              const PointsByRow& points,
              const std::vector<SideOffset>& sides,
-             const DisparityRange& range)
+             const DisparityRange& range,
+             bool compare_levels)
       : pair_(pair),
         points_(points),
         offsets_(sides),
@@ -62,6 +63,7 @@ class EdgeSearch {
     right_ = census_transform(pair.right, border_);
     mirrored_right_ = mirrored(right_);
     for (const int x : points.x) first_.push_back(width_ - 1 - x + least_);
+    if (!compare_levels) return;
     left_levels_ = mean_levels(pair.left, border_);
     const LevelImage right = mean_levels(pair.right, border_);
     const LevelImage mirrored_right = mirrored(right);
@@ -212,7 +214,7 @@ Attempt attempt_at(const RectifiedPair& pair,
                    const std::vector<SideOffset>& sides,
                    const DisparityRange& range,
                    const EdgeMatcherOptions& options) {
-  const EdgeSearch search(pair, points, sides, range);
+  const EdgeSearch search(pair, points, sides, range, options.compare_levels);
   Attempt attempt;
   for (bool slanted = false;; slanted = true) {
     attempt.found = search.find(slanted);

@@ -155,7 +155,8 @@ double share_of_bars_found(double gamma, bool has_strip) {
   constexpr int disparity_px = 48 - 14;  // one and a half periods
   const RectifiedPair pair{bars(600, 0, 1, has_strip), bars(600, disparity_px, gamma, has_strip)};
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
-  const std::vector<EdgeMatch> matches = match_edges(pair, edges, {0, 64});
+  const std::vector<EdgeMatch> matches =
+      match_edges(pair, edges, {0, 64}, {.compare_levels = true});
   int inner = 0, right = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (edges[i].x < 80 || edges[i].y > 56) continue;
@@ -176,7 +177,7 @@ TEST(EdgeMatcher, TellsBarsByTheirGreys) {
 TEST(EdgeMatcher, FewDisparitiesTellNoTones) {
   const RectifiedPair pair{random_image(120, 40, 308), random_image(120, 40, 309)};
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
-  EXPECT_EQ(match_edges(pair, edges, {0, 2}).size(), edges.size());
+  EXPECT_EQ(match_edges(pair, edges, {0, 2}, {.compare_levels = true}).size(), edges.size());
 }
 
 }  // namespace

@@ -19,11 +19,11 @@
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
-#include "sim/study/system_kind.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
+#include "sim/study/system_kind.h"
 #include "sim/told/fresh_calibrations.h"
 
 namespace vernier::sim::internal {

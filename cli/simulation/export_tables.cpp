@@ -27,6 +27,7 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
@@ -231,7 +232,7 @@ void add_trial(Row& row, const TrialResult& t) {
 
 /// Of another system than a localiser.
 void add_system_trial(Row& row, const SystemSettings& system, const TrialResult& t) {
-  constexpr std::size_t longest_status = 15, longest_reason = 200;
+  constexpr std::size_t longest_status = 15;
   row.whole("trial", t.trial);
   row.text("status", std::string(name(t.status)), longest_status);
   row.flag("answered", t.answered());

@@ -82,7 +82,7 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
-  if (system_kind(system_of(study.file).name).uses_opencv) cv::setNumThreads(1);  // as evaluate
+  if (system_of(study.file).uses_opencv) cv::setNumThreads(1);  // as evaluate
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };

@@ -40,25 +40,29 @@ std::vector<Vector2d> left_rays(const Rig& truth,
     for (int x = 0; x < geometry.size_px[0]; ++x) {
       const auto raw_px = raw.in_image_at({x, y});
       const auto ray = raw_px ? try_unproject(truth.cameras[0], *raw_px) : std::nullopt;
-      rays.push_back(ray ? Vector2d(ray->head<2>() / ray->z()) : Vector2d(none, none));
+      rays.push_back(ray ? Vector2d(ray->head<2>()) : Vector2d(none, none));
     }
   }
   return rays;
 }
 
-/// Rectified right pixel of a point of the right camera's frame, in its image or not; nullopt if
-/// the rigs cannot image it.
-std::optional<Vector2d> right_pixel(const Rig& truth,
-                                    const Rig& told,
-                                    const stereo::RectifiedGeometry& geometry,
-                                    const Vector3d& x_right,
-                                    bool& has_image) {
+/// Where the right camera has a point, rectified.
+struct RightPixel {
+  Vector2d px;
+  bool in_images;  ///< in the raw image and in a row of the rectified one
+};
+
+/// Of a point of the right camera's frame; nullopt if the rigs cannot image it.
+std::optional<RightPixel> right_pixel(const Rig& truth,
+                                      const Rig& told,
+                                      const stereo::RectifiedGeometry& geometry,
+                                      const Vector3d& x_right) {
   const Camera& camera = truth.cameras[1];
   const auto raw_px = try_project(camera, x_right);
-  const auto pixel = raw_px ? stereo::rectified_pixel(told, geometry, 1, *raw_px) : std::nullopt;
-  has_image = pixel && in_image(camera, *raw_px) && pixel->y() >= 0 &&
-              pixel->y() <= geometry.size_px[1] - 1;
-  return pixel;
+  const auto px = raw_px ? stereo::rectified_pixel(told, geometry, 1, *raw_px) : std::nullopt;
+  if (!px) return std::nullopt;
+  const bool in_row = px->y() >= 0 && px->y() <= geometry.size_px[1] - 1;
+  return RightPixel{*px, in_image(camera, *raw_px) && in_row};
 }
 
 }  // namespace
@@ -87,15 +91,14 @@ ToldTruth told_truth(const ImageScene& scene,
     const double depth_m = (geometry.turn.R_rectified_left * x_left).z();
     result.depth_m[i] = static_cast<float>(depth_m);
     const Vector3d x_right = T_right_left * x_left;
-    bool has_image = false;
-    const auto seen = right_pixel(truth, told, geometry, x_right, has_image);
+    const auto seen = right_pixel(truth, told, geometry, x_right);
     if (!seen) {  // the geometry's own disparity
       map.values[i] = static_cast<float>(geometry.disparity_px(depth_m));
       continue;
     }
-    map.values[i] = static_cast<float>(static_cast<double>(i % width) - seen->x());
-    result.vertical_px[i] = static_cast<float>(seen->y() - static_cast<double>(i / width));
-    if (!has_image) continue;
+    map.values[i] = static_cast<float>(static_cast<double>(i % width) - seen->px.x());
+    result.vertical_px[i] = static_cast<float>(seen->px.y() - static_cast<double>(i / width));
+    if (!seen->in_images) continue;
     right_rays[i] = x_right.head<2>() / x_right.z();
     right_z[i] = x_right.z();
   }

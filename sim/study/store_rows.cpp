@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/store_rows.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -33,9 +35,6 @@ using TrialJson = nlohmann::json;
 /// have fields of their own.
 constexpr std::size_t fields_of_a_trial = 17, fields_of_old_trials = 15,
                       fields_of_other_systems = 10;
-
-/// Of the reason that is stored, bytes.
-constexpr std::size_t longest_failure = 200;
 
 TrialJson number_or_null(double value) {
   return std::isfinite(value) ? TrialJson(value) : TrialJson(nullptr);
@@ -98,8 +97,8 @@ class TrialRow {
   }
   std::string text() {
     const TrialJson& field = next();
-    if (!field.is_string() || field.get_ref<const std::string&>().size() > longest_failure) {
-      fail("a reason is no text of 200 bytes at most");
+    if (!field.is_string() || field.get_ref<const std::string&>().size() > longest_reason) {
+      fail(fmt::format("a reason is no text of {} bytes at most", longest_reason));
     }
     return field;
   }
@@ -165,7 +164,7 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
 
 /// As much of a reason as is stored: whole characters.
 std::string shown_failure(const std::string& failure) {
-  const std::string start = failure.substr(0, longest_failure);
+  const std::string start = failure.substr(0, longest_reason);
   return start.substr(0, first_bad_utf8(start));
 }
 

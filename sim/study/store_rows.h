@@ -3,12 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "sim/experiment.h"
 
 namespace vernier::sim::internal {
+
+/// Of the reason of a trial that failed or is doubted as much is stored, bytes.
+inline constexpr std::size_t longest_reason = 200;
 
 /// A block as its row in a store holds it.
 struct BlockRow {

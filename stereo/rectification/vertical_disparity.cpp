@@ -144,12 +144,9 @@ std::optional<PixelPair> pair_at_distance(const Rig& rig,
   const Vector3d direction = ray->normalized();
   const Vector3d x =
       std::isinf(distance_m) ? Vector3d(T.R * direction) : Vector3d(T * (distance_m * direction));
-  if (!(x.z() > 0)) return std::nullopt;
-  ProjectionJacobian J;
-  const Eigen::Vector2d right_px = project(rig.cameras[1], x, J);
-  const bool folded = !(J.point.leftCols<2>().determinant() > 0);
-  if (folded || !in_image(rig.cameras[1], right_px)) return std::nullopt;
-  return PixelPair{left_px, right_px};
+  const auto right_px = try_project(rig.cameras[1], x);
+  if (!right_px || !in_image(rig.cameras[1], *right_px)) return std::nullopt;
+  return PixelPair{left_px, *right_px};
 }
 
 VerticalDisparityMap vertical_disparity_map(

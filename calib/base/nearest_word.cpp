@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "calib/base/shown_text.h"
+
 namespace vernier::internal {
 namespace {
 
@@ -47,8 +49,15 @@ Nearest nearest(std::string_view word, const std::vector<std::string_view>& know
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
-  return nearest(word, known).word;
+std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known) {
+  constexpr std::size_t few = 20;
+  const Nearest best = nearest(word, known);
+  if (2 * best.distance <= std::max(word.size(), std::size_t{2}) || known.size() > few) {
+    return "did you mean '" + shortened(best.word) + "'?";
+  }
+  std::vector<std::string> quoted;
+  for (const std::string_view one : known) quoted.push_back("'" + shortened(one) + "'");
+  return "use " + alternatives(quoted);
 }
 
 std::optional<std::string> misspelt_word(std::string_view word,

@@ -9,8 +9,9 @@
 
 namespace vernier::internal {
 
-/// The known word with the smallest edit distance.
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
+/// What to do about a word that is not one of the known: "did you mean 'name'?" or, if a few are
+/// known and none is near it, a list of them.
+std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known);
 
 /// The known word that is meant by one that is none: behind its first letter one is missing, too
 /// much or another, or two are exchanged. Nothing for a known word.

@@ -95,7 +95,7 @@ void TomlReader::check_keys(const toml::table& table,
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     fail(key.source().begin.line,
          "unknown key '" + shortened(key.str()) + "'" + (owner.empty() ? "" : " in " + owner),
-         "did you mean '" + nearest_word(key.str(), known) + "'?");
+         unknown_word_remedy(key.str(), known));
   }
 }
 

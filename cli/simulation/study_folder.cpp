@@ -127,10 +127,13 @@ Json setting_json(const std::string& text) {
 }
 
 Json system_json(const SystemKind& kind) {
+  Json measured = Json::object();
+  for (const MeasuredQuantity& of : kind.measured) measured[of.name] = of.meaning;
   return {{"name", kind.name},
           {"error", kind.error_name},
           {"title", kind.error_title},
-          {"unit", kind.unit}};
+          {"unit", kind.unit},
+          {"measured", measured}};
 }
 
 std::vector<fs::path> study_folder_files(const fs::path& folder) {

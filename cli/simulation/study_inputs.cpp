@@ -168,22 +168,22 @@ void load(const StudyInput& input, const fs::path& file, Study& study, Session& 
   }
 }
 
-void check_covariance(const RigEstimate& rig, const std::string& place) {
-  if (rig.covariance) return;
-  throw Error(
-      place, "the rig has no covariance to draw what is told of it from",
-      "calibrate it with vernier calibrate, or set sources.calibration = 0: it is then told "
-      "exactly");
-}
-
-void check_covariances(const Study& study, const fs::path& rig) {
+/// Throws Error at the line of rig.file for a rig to draw from that has no covariance.
+void check_covariances(const Study& study) {
   for (const StudyCell& cell : study.file.cells) {
-    if (!(cell.experiment.sources.calibration > 0) || cell.told.calibration) continue;
-    if (cell.told.truth.empty()) {
-      check_covariance(study.rig, rig.string());
-    } else if (cell.told.error == ToldSettings::Error::drawn) {
-      check_covariance(study.told_rigs.at(cell.told.file).estimate, cell.told.file);
-    }
+    const ToldSettings& told = cell.told;
+    if (!(cell.experiment.sources.calibration > 0) || told.calibration) continue;
+    const bool is_truth = told.truth.empty();
+    if (!is_truth && told.error == ToldSettings::Error::given) continue;
+    const RigEstimate& rig = is_truth ? study.rig : study.told_rigs.at(told.file).estimate;
+    if (rig.covariance) continue;
+    throw Error(place_of(study.file, "rig.file"),
+                fmt::format("{} has no covariance to draw what is told of the rig from",
+                            is_truth ? study.file.rig : told.file),
+                is_truth ? "calibrate it with vernier calibrate, or set sources.calibration = 0: "
+                           "it is then told exactly"
+                         : "calibrate it with vernier calibrate, or set rig.error = \"given\": it "
+                           "is then told as it is");
   }
 }
 
@@ -191,14 +191,11 @@ template <class FileOf>
 Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
   Study study;
   study.file = std::move(file);
-  fs::path rig;
   for (const StudyInput& input : named_files(study.file)) {
-    const fs::path path = file_of_input(input);
-    if (input.role == InputRole::rig) rig = path;
-    load(input, path, study, session);
+    load(input, file_of_input(input), study, session);
   }
   if (study.file.cells[0].system.is_localiser()) check_maps(study);
-  check_covariances(study, rig);
+  check_covariances(study);
   return study;
 }
 

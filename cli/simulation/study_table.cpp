@@ -229,8 +229,14 @@ std::string rig_text(const Study& study) {
     return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));
   }
   std::string text = fmt::format("true rig {}\n", study.file.rig);
-  for (const std::string& file : told_rigs_of(study.file)) {
-    text += fmt::format("told rig {}: {}\n", file, covariance(study.told_rigs.at(file).estimate));
+  std::set<std::string> said;
+  for (const StudyCell& cell : study.file.cells) {
+    const std::string& file = cell.told.file;
+    const std::string line = fmt::format("told rig {}: {}\n", file,
+                                         cell.told.error == ToldSettings::Error::given
+                                             ? "as given, its error scaled by psi_c"
+                                             : covariance(study.told_rigs.at(file).estimate));
+    if (said.insert(line).second) text += line;
   }
   return text;
 }

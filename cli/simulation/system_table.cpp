@@ -30,8 +30,9 @@ std::string measured_table(const StudyResults& results, std::vector<TextColumn> 
   const SystemKind& kind = system_kind(system.name);
   for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
     const std::string& name = system.measured_names[i];
-    const bool by_rms = std::find(kind.of_either_sign.begin(), kind.of_either_sign.end(), name) !=
-                        kind.of_either_sign.end();
+    const bool by_rms = std::any_of(
+        kind.measured.begin(), kind.measured.end(),
+        [&](const MeasuredQuantity& of) { return of.name == name && of.of_either_sign; });
     TextColumn column{by_rms ? "rms " + name : name, {}};
     for (const CellResult& cell : results.cells) {
       const std::vector<MeasuredSummary>& all = cell.summary.measured;

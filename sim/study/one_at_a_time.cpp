@@ -68,7 +68,7 @@ void read_sources(const TomlReader& reader, const toml::node& node, OneAtATime& 
       for (const SourceParameter* p : switches()) known.push_back(p->name);
       reader.fail(entry,
                   "one_at_a_time.sources: " + in_quotes(word) + " is no source that can be off",
-                  "did you mean \"" + nearest_word(word, known) + "\"?");
+                  unknown_word_remedy(word, known));
     }
     if (std::find(read.sources.begin(), read.sources.end(), word) != read.sources.end()) {
       reader.fail(entry, "one_at_a_time.sources lists " + word + " twice", "remove one");

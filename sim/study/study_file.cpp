@@ -49,7 +49,6 @@ class StudyReader : private SettingsReader {
   std::filesystem::path read_sources_file(const toml::table& root,
                                           const std::filesystem::path& instead);
   void read_sweep(const toml::table& root, StudyFile& study) const;
-  void check_complete(const toml::table& root, const std::vector<std::string>& swept) const;
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
   void add_designs(const toml::table& root, StudyFile& study) const;
@@ -213,15 +212,6 @@ void StudyReader::check_sweep_size(const toml::table& root, const StudyFile& stu
        "sweep fewer values, or reduce study.trials");
 }
 
-/// Throws Error for a key that is needed and neither given nor swept.
-void StudyReader::check_complete(const toml::table& root,
-                                 const std::vector<std::string>& swept) const {
-  const bool worlds = std::find(swept.begin(), swept.end(), "world.file") != swept.end();
-  const auto* world = section(root, "world");
-  if (world && !worlds) required(*world, "file", "[world]");
-  ToldReader(place()).check_complete(root, swept);
-}
-
 void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   const toml::table* sweep = section(root, "sweep");
   std::size_t count = 1;
@@ -318,7 +308,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   const bool localises = read_cell(root).system.is_localiser();
   if (!localises) study.trials_per_block = independent_block_size(study.trials);
   read_sweep(root, study);
-  check_complete(root, study.sweep_keys);
+  ToldReader(place()).check_complete(root, study.sweep_keys);
   check_sweep_size(root, study);
   add_cells(root, study);
   add_designs(root, study);

@@ -38,6 +38,13 @@ struct SystemOption {
   std::pair<std::string, std::string> only_with = {};
 };
 
+/// What a trial of a kind measures beside its error.
+struct MeasuredQuantity {
+  std::string name;             ///< column
+  std::string meaning;          ///< in words, for the report
+  bool of_either_sign = false;  ///< tables tell its RMS, not its median
+};
+
 /// What a study tries: the table [system] of its file.
 struct SystemSettings {
   std::string name = "localiser";
@@ -66,9 +73,9 @@ struct SystemKind {
   std::string error_title;  ///< the same on axes: "depth error"
   std::string unit;         ///< "m"; empty: none
   double success_error = std::numeric_limits<double>::quiet_NaN();  ///< default; NaN: to be given
+  double largest_error = std::numeric_limits<double>::infinity();   ///< 1 for a share
   std::vector<SystemOption> options = {};
-  std::vector<std::string> measured = {};  ///< what a trial measures besides; `names` add to it
-  std::vector<std::string> of_either_sign = {};  ///< of these, those told by their RMS in tables
+  std::vector<MeasuredQuantity> measured = {};  ///< options of type `names` add to them
   /// Tables of a study file that it uses besides [study], [system], [rig], [sweep] and [tune].
   std::vector<std::string> sections = {};
   SourcesUsed sources = SourcesUsed::none;

@@ -119,6 +119,10 @@ void SystemReader::read_options(const toml::table& section,
       fail(*node, "system.success_error is not above 0",
            "give the largest error of a trial that counts as a success");
     }
+    if (!(settings.success_error < kind.largest_error)) {
+      fail(*node, "system.success_error is not below " + fmt::format("{:g}", kind.largest_error),
+           "the error is a " + kind.error_title);
+    }
   } else if (std::isnan(settings.success_error)) {
     required(section, "success_error", "[system]");
   }
@@ -202,7 +206,7 @@ SystemSettings SystemReader::read(const toml::table& root) const {
   SystemSettings settings;
   settings.name = kind.name;
   settings.success_error = kind.success_error;
-  settings.measured_names = kind.measured;
+  for (const MeasuredQuantity& of : kind.measured) settings.measured_names.push_back(of.name);
   const toml::table empty;
   const toml::table* section = root.get_as<toml::table>("system");
   read_options(section ? *section : empty, kind, settings);

@@ -59,13 +59,11 @@ std::vector<WorkUnit> query_units(const MissingWork& missing) {
 
 UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std::stop_token& stop)
     : study_(study), work_(work), scenes_(study) {
-  try_program(stop);
-  std::set<std::string> commands;  // each program is started once
+  try_programs(stop);
   for (const StudyCell& cell : study.file.cells) {
     if (!cell.system.is_localiser()) {
       if (stop.stop_requested()) return;
-      const bool is_program = system_kind(cell.system.name).is_program;
-      if (!is_program || commands.insert(cell.system.command()).second) system(cell);
+      if (!system_kind(cell.system.name).is_program) system(cell);
       continue;
     }
     StudyCell still = cell;
@@ -76,14 +74,18 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std:
   }
 }
 
-void UnitComputer::try_program(const std::stop_token& stop) const {
-  const auto asks = [](const StudyCell& cell) { return !cell.system.command().empty(); };
-  const auto& cells = study_.file.cells;
-  const auto cell = std::find_if(cells.begin(), cells.end(), asks);
-  if (cell == cells.end()) return;
+void UnitComputer::try_programs(const std::stop_token& stop) const {
+  std::set<std::string> tried;
+  for (const StudyCell& cell : study_.file.cells) {
+    const std::string command = cell.system.command();
+    if (!command.empty() && tried.insert(command).second) try_program(cell, stop);
+  }
+}
+
+void UnitComputer::try_program(const StudyCell& cell, const std::stop_token& stop) const {
   constexpr int most_failures = 3;
   constexpr std::uint32_t most_trials = 30;
-  const Lease asked = system(*cell);
+  const Lease asked = system(cell);
   std::string why;
   int failures = 0;
   for (std::uint32_t trial = 0; trial < most_trials && failures < most_failures; ++trial) {

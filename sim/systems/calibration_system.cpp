@@ -72,8 +72,10 @@ SystemKind calibration_kind() {
       .unit = "m",
       .success_error = 0.05,
       .options = {{.name = "range_m", .usual = "5", .low = 0.1, .high = 1000}},
-      .measured = {"signed_depth_error_m", "stated_depth_sd_m", "error_over_sd"},
-      .of_either_sign = {"signed_depth_error_m", "error_over_sd"},
+      .measured = {{"signed_depth_error_m", "depth error with its sign, m", true},
+                   {"stated_depth_sd_m", "its standard deviation as the covariance states it, m"},
+                   {"error_over_sd", "error over stated standard deviation; expected RMS: 1",
+                    true}},
       .sections = {"calibration"},
       .calibrates = true,
       .make = [](const SystemSetup& setup) { return std::make_unique<CalibrationSystem>(setup); }};

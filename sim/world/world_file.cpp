@@ -172,8 +172,7 @@ void WorldReader::read_instances(const toml::table& root, WorldDescription& worl
     }
     fail(*entry->get("template"),
          what + " refers to the unknown template '" + shortened(name) + "'",
-         names.empty() ? "define it in a [[template]]"
-                       : "did you mean '" + shortened(nearest_word(name, names)) + "'?");
+         names.empty() ? "define it in a [[template]]" : unknown_word_remedy(name, names));
   }
 }
 

@@ -19,6 +19,7 @@
 #include "calib/base/atomic_file.h"
 #include "calib/base/image_file.h"
 #include "calib/base/program_run.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "stereo/disparity_file.h"
 #include "stereo/grey_levels.h"
@@ -41,6 +42,30 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> outputs =
      {"{output.png}", "output.png"},
      {"{output.npy}", "output.npy"}}};
 
+const std::vector<std::string> placeholders{"{left}",       "{right}",     "{least}",
+                                            "{most}",       "{output}",    "{output.pfm}",
+                                            "{output.png}", "{output.npy}"};
+
+/// Throws Error for a {name} that is replaced by nothing, in a word without blanks: others are
+/// scripts, which have braces of their own.
+void check_placeholders(const std::string& word, const std::string& place) {
+  const auto is_in_name = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.';
+  };
+  if (std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::isspace(c) != 0; }))
+    return;
+  for (std::size_t at = word.find('{'); at != std::string::npos; at = word.find('{', at + 1)) {
+    std::size_t end = at + 1;
+    while (end < word.size() && is_in_name(static_cast<unsigned char>(word[end]))) ++end;
+    const bool is_of_shell = at > 0 && word[at - 1] == '$';
+    if (is_of_shell || end == at + 1 || end == word.size() || word[end] != '}') continue;
+    const std::string name = word.substr(at, end + 1 - at);
+    if (std::find(placeholders.begin(), placeholders.end(), name) != placeholders.end()) continue;
+    throw Error(place, "has the unknown placeholder " + in_quotes(name),
+                "use " + alternatives(placeholders));
+  }
+}
+
 /// A command split into words, and the name of the map that it writes.
 struct Command {
   std::string place;  ///< used in error messages
@@ -56,6 +81,7 @@ Command parse_command(const std::string& command) {
       [](unsigned char letter) { return std::iscntrl(letter) != 0; }, ' ');
   parsed.words = command_words(command, parsed.place);
   if (parsed.words.empty()) throw Error("matcher", "the command is empty", "give a program");
+  for (const std::string& word : parsed.words) check_placeholders(word, parsed.place);
   for (const char* needed : {"{left}", "{right}"}) {
     if (command.find(needed) == std::string::npos) {
       throw Error(parsed.place, std::string("has no ") + needed,

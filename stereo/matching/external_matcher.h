@@ -46,9 +46,10 @@ struct ExternalMatcherOptions {
 /// refer to "$1" ….
 ///
 /// Disparities more than half a pixel outside the range, such as −1, are unknown. Throws Error
-/// naming the command if {left}, {right} or {output} is missing; when matching, if the program is
-/// not found, exceeds the time limit, exits with a non-zero status (with its last line of output),
-/// or writes no map or one of another size, or if a PNG would have to hold negative disparities.
+/// naming the command if {left}, {right} or {output} is missing, or if a word without blanks has
+/// another {name} (not ${name}); when matching, if the program is not found, exceeds the time
+/// limit, exits with a non-zero status (with its last line of output), or writes no map or one of
+/// another size, or if a PNG would have to hold negative disparities.
 Matcher external_matcher(const std::string& command, const ExternalMatcherOptions& options = {});
 
 /// The dense disparity map.

@@ -595,7 +595,7 @@ class BadInput(Case):
                        leaves=[self.folder / 's.csv'])
         (self.folder / 's.toml').write_text('[study]\ntrials = 5\n[rig]\nfile = "bare.json"\n')
         self.complains('study', self.folder / 's.toml', '-o', self.folder / 'out',
-                       of='the rig has no covariance')
+                       of='s.toml:4: bare.json has no covariance')
 
     def test_unknown_names(self):
         self.complains('world', 'info', 'atlantis', of='shipped: workshop')

@@ -66,6 +66,10 @@ class Systems(unittest.TestCase):
             self.assertIn(part, done.stderr)
         self.assertFalse((self.folder / 'results').exists())
 
+    def has_embree(self):
+        doctor = json.loads(self.call('doctor', '--json').stdout)['findings']
+        return {one['what']: one['found'] for one in doctor}['Embree']
+
     def check_example(self, name, trials, error, measured):
         done = self.run_study(shorter(name, trials))
         for line in done.stdout.splitlines():
@@ -101,8 +105,7 @@ class Systems(unittest.TestCase):
             'along_m', 'across_m', 'image_error_px', 'frames', 'contacts', 'retreats', 'time_s'])
 
     def test_matchers(self):
-        doctor = json.loads(self.call('doctor', '--json').stdout)['findings']
-        if not {one['what']: one['found'] for one in doctor}['Embree']:
+        if not self.has_embree():
             self.skipTest('built without Embree')
         text = EXAMPLES['matchers'].replace('[world]', 'samples = 1\n\n[world]', 1)
         self.addCleanup(EXAMPLES.__setitem__, 'matchers', EXAMPLES['matchers'])
@@ -155,6 +158,20 @@ class Systems(unittest.TestCase):
         self.assertIn('a program failed in 1 of 30 trials', done.stderr)
         self.assertIn('first by:', done.stderr)
 
+    def test_a_matchers_program_that_fails_ends_the_study(self):
+        if not self.has_embree():
+            self.skipTest('built without Embree')
+        (self.folder / 'fails.sh').write_text('echo asked >>asked\necho no memory >&2\nexit 3\n')
+        matcher = EXAMPLES['matchers'].replace('["edge", "bm", "sgbm"]', '["program"]')
+        for command, why in (('no-such-program', "program 'no-such-program' not found"),
+                             ('sh fails.sh', 'exited with status 3: no memory')):
+            text = matcher.replace('[world]', f'command = "{command} {{left}} {{right}} {{output}}"\n\n'
+                                              '[world]')
+            self.refused(text, 'study.toml:8: the program failed in the first 3 trials', why)
+        self.assertEqual((self.folder / 'asked').read_text().split(), 3 * ['asked'])
+        self.refused(text.replace('{output}', '{output} {most_px}'), 'study.toml:8: ',
+                     'unknown placeholder "{most_px}"; use {left}')
+
     def test_an_edited_program_begins_anew(self):
         self.run_study(shorter('program', 6))
         with open(self.folder / 'own_system.py', 'a', encoding='utf-8') as file:
@@ -172,6 +189,11 @@ class Systems(unittest.TestCase):
                      'study.toml:2', 'study.protocol has no effect')
         self.refused(calibrations.replace('range_m', 'range'), "did you mean 'range_m'")
         self.refused(calibrations.replace('"calibration"', '"calibrator"'), 'unknown system')
+        matchers = EXAMPLES['matchers']
+        self.refused(matchers.replace('success_error = 0.2', 'success_error = 1'),
+                     'study.toml:7: system.success_error is not below 1')
+        self.refused(matchers.replace('success_error', 'range_m'),
+                     "unknown key 'range_m' in [system]; use 'name', 'success_error', 'matcher', ")
         self.refused(EXAMPLES['program'].replace('success_error = 0.05\n', ''), 'success_error')
         self.refused(EXAMPLES['program'].replace('python3 own_system.py', 'no-such-program'),
                      'study.toml:6', 'no-such-program')

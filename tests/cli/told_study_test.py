@@ -117,6 +117,12 @@ class Refusals(Told):
         rig = json.loads((pathlib.Path(os.environ['VERNIER_SHARE']) if 'VERNIER_SHARE' in os.environ else
                           pathlib.Path(store_test.PROGRAM).parent / 'share/vernier')
                          .joinpath('rigs/nominal.rig.json').read_text())
+        bare = {key: rig[key] for key in ('format', 'version', 'cameras')}
+        (self.folder / 'bare.json').write_text(json.dumps(bare))
+        self.refused(STUDY + '[rig]\nfile = "bare.json"\n',
+                     ':9: bare.json has no covariance to draw what is told of the rig from; calibrate it '
+                     'with vernier calibrate, or set sources.calibration = 0')
+        self.refused(TOLD + 'file = "bare.json"\n', 'or set rig.error = "given": it is then told as it is')
         (self.folder / 'one.json').write_text(json.dumps(
             {'format': rig['format'], 'version': rig['version'], 'cameras': rig['cameras'][:1]}))
         self.refused(STUDY + '[rig]\nfile = "one.json"\n[sources]\ncalibration = 0\n',

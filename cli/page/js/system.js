@@ -73,7 +73,7 @@ export function system_cells_section(study) {
     several && "A cell is one combination of settings; all cells have the same trials. ",
     `Success: ${title} ${limit}; trials without an answer count as failures. Coverage: fraction of`
       + ` trials with an answer. Failed: trials without a result. Error: ${title} of answered`
-      + " trials. CPU time is that of one trial."));
+      + " trials. CPU time: mean of the trials."));
   const headline_of_study = headline_cell(study);
   made.append(table(cells_caption(study), cell_columns(study), study.cells,
     { chosen: (cell) => several && cell === headline_of_study }));
@@ -108,7 +108,8 @@ function failures_tables(study) {
 
 const MOST_QUANTITIES = 7;  // beside each other, on paper
 
-function measured_tables({ cells }) {
+function measured_tables(study) {
+  const { cells } = study;
   const names = [...new Set(cells.flatMap((cell) => Object.keys(cell.measured ?? {})))];
   const tables = [];
   for (let i = 0; i < names.length; i += MOST_QUANTITIES) {
@@ -118,6 +119,14 @@ function measured_tables({ cells }) {
       { head: "Cell", text: true, cell: (cell) => cell.label ?? DASH },
       ...names.slice(i, i + MOST_QUANTITIES).map(measured_column),
     ], cells, { wide: false }));
+  }
+  const meanings = study.system.measured ?? {};
+  const explained = names.filter((name) => meanings[name]);
+  if (explained.length) {
+    tables.push(table("What these quantities are", [
+      { head: "Quantity", text: true, cell: (name) => element("code", {}, name) },
+      { head: "Meaning", text: true, cell: (name) => meanings[name] },
+    ], explained, { wide: false }));
   }
   return tables;
 }

@@ -230,6 +230,9 @@ TEST(StudyFile, AProgramIsPartOfTheCell) {
 TEST(StudyFile, ComplaintsNameLineAndRemedy) {
   EXPECT_EQ(complaint_of("[study]\ntrails = 9\n"),
             "s.toml:2: unknown key 'trails' in [study]; did you mean 'trials'?");
+  EXPECT_EQ(complaint_of("[study]\n[world]\nzoom = 1\n"),
+            "s.toml:3: unknown key 'zoom' in [world]; use 'file' or 'visibility'");
+  EXPECT_EQ(parse_study("[study]\n[world]\nvisibility = \"exact\"\n", "s.toml").world, "workshop");
   EXPECT_NE(complaint_of("[study\n").find("s.toml:1: not TOML"), std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sources]\nedge_loss = 2\n")
                 .find("s.toml:3: sources.edge_loss = 2 is out of range"),

@@ -188,7 +188,7 @@ TEST_F(ExternalMatcher, IsToldApartAtBlanksOutsideOfQuotes) {
   const std::string program = script("copy", "for word; do echo \"[$word]\"; done >'" + kept +
                                                  "/said'\ncp '" + kept + "/map.pfm' \"$1\"\n");
   map_of(program +
-         " {output}  'a  b'\"c'd\"  \\'e\\  \"\" '\\' \"\\\"\" $HOME *\t;{left}{right}> {x} ");
+         " {output}  'a  b'\"c'd\"  \\'e\\  \"\" '\\' \"\\\"\" $HOME *\t;{left}{right}> {} ");
   std::ifstream in(kept + "/said");
   std::vector<std::string> said;
   for (std::string line; std::getline(in, line);) said.push_back(line);
@@ -201,7 +201,7 @@ TEST_F(ExternalMatcher, IsToldApartAtBlanksOutsideOfQuotes) {
   EXPECT_EQ(said[6], "[$HOME]");
   EXPECT_EQ(said[7], "[*]");
   EXPECT_EQ(said[8].substr(0, 2), "[;");
-  EXPECT_EQ(said[9], "[{x}]");
+  EXPECT_EQ(said[9], "[{}]");
   map_of("sh -c 'cp \"$0\" \"$1\"' '" + kept + "/map.pfm' {output} {left} {right}");
 }
 
@@ -209,7 +209,12 @@ TEST_F(ExternalMatcher, IsRefusedWithoutItsPlaceholders) {
   expect_complaint("prog {right} {output}", "has no {left}");
   expect_complaint("prog {left} {output}", "has no {right}");
   expect_complaint("prog {left} {right}", "has no {output}");
-  expect_complaint("prog {left} {right} {output.tiff}", "has no {output}");
+  expect_complaint("prog {left} {right} {output.tiff}", "unknown placeholder \"{output.tiff}\"");
+  expect_complaint("prog {left} {right} --most={max} {output}",
+                   "unknown placeholder \"{max}\"; use {left}, {right}, {least}, {most}, {output}");
+  for (const char* own : {"${max}", "'awk {print}'", "{a-b}", "{", "{left", "{}"}) {
+    external_matcher(std::string("prog {left} {right} {output} ") + own);
+  }
   expect_complaint("prog {left} {right} {output} {output.png}", "two formats");
   expect_complaint("prog {left} {right} {output} 'x", "unclosed quote '");
   expect_complaint("", "the command is empty");

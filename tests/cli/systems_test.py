@@ -167,9 +167,9 @@ class Systems(unittest.TestCase):
                              ('sh fails.sh', 'exited with status 3: no memory')):
             text = matcher.replace('[world]', f'command = "{command} {{left}} {{right}} {{output}}"\n\n'
                                               '[world]')
-            self.refused(text, 'study.toml:8: the program failed in the first 3 trials', why)
+            self.refused(text, 'study.toml:9: the program failed in the first 3 trials', why)
         self.assertEqual((self.folder / 'asked').read_text().split(), 3 * ['asked'])
-        self.refused(text.replace('{output}', '{output} {most_px}'), 'study.toml:8: ',
+        self.refused(text.replace('{output}', '{output} {most_px}'), 'study.toml:9: ',
                      'unknown placeholder "{most_px}"; use {left}')
 
     def test_an_edited_program_begins_anew(self):

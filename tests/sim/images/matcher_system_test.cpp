@@ -90,7 +90,7 @@ TEST(MatcherSystem, IsToldAnotherRigThanTookTheImages) {
   const StudyFile study = matcher_study("matcher = \"sgbm\"\n");
   const StudyCell& cell = study.cells[0];
   const Rig& truth = test::nominal_rig().rig;
-  const std::vector<std::string>& names = system_kind("matcher").measured;
+  const std::vector<std::string>& names = cell.system.measured_names;
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };

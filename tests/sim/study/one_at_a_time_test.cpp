@@ -153,7 +153,7 @@ TEST(OneAtATime, RefusesWhatItCannotMake) {
   EXPECT_NE(fault("designs = [\"each\"]\n").find("\"each\" is unknown"), std::string::npos);
   EXPECT_NE(fault("designs = []\n").find("is empty"), std::string::npos);
   EXPECT_NE(fault("sources = [\"edge_loss\"]\n").find("designs"), std::string::npos);
-  EXPECT_NE(fault("designs = [\"only\"]\nsources = [\"edge_los\"]\n").find("\"edge_loss\""),
+  EXPECT_NE(fault("designs = [\"only\"]\nsources = [\"edge_los\"]\n").find("'edge_loss'"),
             std::string::npos);
   EXPECT_NE(fault("designs = [\"only\"]\nsources = [\"clutter\"]\n").find("it is off everywhere"),
             std::string::npos);

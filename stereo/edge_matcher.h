@@ -18,9 +18,9 @@ struct EdgeMatcherOptions {
   /// Fraction of unmatched points, or of refined points with a disparity gradient above 0.2 px per
   /// pixel, above which slanted surfaces are searched as well.
   double slanted_above = 0.3;
-  /// Compare grey levels beside edges too: tells the outlines of plain frames and bars from one
-  /// another, and mistakes the periods of a pattern where its lighting differs between the images.
-  bool compare_levels = false;
+  /// Compare grey levels beside edges too, which tells the outlines of plain frames and bars from
+  /// one another.
+  bool compare_levels = true;
   bool refine = true;      ///< least squares refinement, with a standard deviation for each point
   double min_score = 0.9;  ///< minimum refined ZNCC; else the support parabola is kept …
   double min_slanted_score = 0.7;   ///< minimum ZNCC for slanted surfaces

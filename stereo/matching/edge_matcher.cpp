@@ -68,11 +68,11 @@ class EdgeSearch {
     const LevelImage right = mean_levels(pair.right, border_);
     const LevelImage mirrored_right = mirrored(right);
     tones_ =
-        tone_curve(level_pairs({points, left_, mirrored_right_, first_, Facing::opposite, count_},
-                               {left_levels_, mirrored_right, sides}, searched_));
+        tones_of(level_pairs({points, left_, mirrored_right_, first_, Facing::opposite, count_},
+                             {left_levels_, mirrored_right, sides}, searched_));
     if (!tones_) return;
-    right_levels_ = toned(right, *tones_);
-    mirrored_right_levels_ = toned(mirrored_right, *tones_);
+    right_levels_ = toned(right, tones_->curve);
+    mirrored_right_levels_ = toned(mirrored_right, tones_->curve);
   }
 
   /// For fronto-parallel surfaces or, with `slanted`, all.
@@ -85,7 +85,7 @@ class EdgeSearch {
       support.small_step = 10;  // otherwise step penalties would turn slopes into stairs
       support.large_step = 600;
     }
-    const SideLevels sides{left_levels_, mirrored_right_levels_, offsets_};
+    const SideLevels sides{left_levels_, mirrored_right_levels_, offsets_, tolerance()};
     CensusCosts costs{points_, left_, mirrored_right_, first_, Facing::opposite, count_};
     if (tones_) costs.sides = &sides;
     if (slanted) costs.stretched = &from_left;
@@ -114,10 +114,12 @@ class EdgeSearch {
       views.push_back({scale,
                        is_left ? census_transform(wide, border)
                                : mirrored(census_transform(mirrored(wide), border)),
-                       is_left || !tones_ ? levels : toned(levels, *tones_)});
+                       is_left || !tones_ ? levels : toned(levels, tones_->curve)});
     }
     return views;
   }
+
+  int tolerance() const { return tones_ ? tones_->tolerance : 0; }
 
   /// Searches from the matched positions of the left points.
   void confirm(const std::vector<StretchedView>* stretched_left,
@@ -152,7 +154,7 @@ class EdgeSearch {
       }
     }
     const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
-    const SideLevels sides{right_levels_, left_levels_, offsets};
+    const SideLevels sides{right_levels_, left_levels_, offsets, tolerance()};
     CensusCosts costs{right, right_, left_, first, Facing::same, count_};
     if (tones_) costs.sides = &sides;
     costs.stretched = stretched_left;
@@ -173,7 +175,7 @@ class EdgeSearch {
   std::vector<int> first_;  ///< place of every left point in the mirrored right image
   CensusImage left_, right_, mirrored_right_;
   /// From the right image to the left one, in which all levels are; none: levels are not compared.
-  std::optional<ToneCurve> tones_;
+  std::optional<Tones> tones_;
   LevelImage left_levels_, right_levels_, mirrored_right_levels_;
 };
 

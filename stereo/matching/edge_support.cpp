@@ -40,15 +40,16 @@ HWY_INLINE void add_sides(const CensusCosts& at,
   const auto k = static_cast<std::size_t>(point);
   const LevelImage& own = at.sides->own;
   const auto [dx, dy] = at.sides->offsets[k];
+  const auto tolerance = static_cast<std::int16_t>(at.sides->tolerance);
   for (const int side : {1, -1}) {
     const int y = std::clamp(at.points.y[k] + side * dy, 0, own.height - 1);
     const std::int16_t level = own.row(y)[at.points.x[k] + side * dx];
     const int across = at.facing == Facing::same ? side * dx : -side * dx;
     const std::uint8_t* const there = other.row(y) + first + across;
     for (int d = 0; d < n; ++d) {
-      const auto apart = static_cast<std::int16_t>(std::abs(there[d] - level));
-      costs[d] =
-          static_cast<std::int16_t>(costs[d] + side_weight * std::min(apart, most_side_levels));
+      const auto apart = static_cast<std::int16_t>(std::abs(there[d] - level) - tolerance);
+      costs[d] = static_cast<std::int16_t>(
+          costs[d] + side_weight * std::clamp<std::int16_t>(apart, 0, most_side_levels));
     }
   }
 }

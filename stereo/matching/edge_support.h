@@ -11,8 +11,9 @@
 
 namespace vernier::stereo::internal {
 
-/// What a difference of one grey level on one side of an edge adds to a cost, up to a difference of
-/// so many: more says no more, as behind an outline the two cameras see different surfaces.
+/// What a difference of one grey level on one side of an edge, beyond the tolerance, adds to a
+/// cost, up to a difference of so many: more says no more, as behind an outline the two cameras see
+/// different surfaces.
 constexpr std::int16_t side_weight = 3, most_side_levels = 12;
 
 /// Cost of a disparity whose position lies outside the other image: above all others.

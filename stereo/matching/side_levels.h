@@ -46,6 +46,7 @@ inline constexpr int side_border = 3;
 struct SideLevels {
   const LevelImage &own, &other;
   const std::vector<SideOffset>& offsets;  ///< one a point, in the own image
+  int tolerance = 0;                       ///< up to this, a difference of two levels is none
 };
 
 }  // namespace vernier::stereo::internal

@@ -12,10 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "calib/statistics/quantile.h"
 #include "stereo/matching/edge_support.h"
 #include "stereo/matching/side_levels.h"
 
 namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
 
 namespace {
 
@@ -64,16 +67,23 @@ double difference_at(const std::vector<Knot>& knots, double level) {
 
 }  // namespace
 
-std::optional<ToneCurve> tone_curve(const std::vector<LevelPair>& pairs) {
+std::optional<Tones> tones_of(const std::vector<LevelPair>& pairs) {
   const std::vector<Knot> knots = knots_of(pairs);
   if (knots.empty()) return std::nullopt;
-  ToneCurve curve{};
-  for (std::size_t level = 0; level < curve.size(); ++level) {
+  Tones tones{};
+  for (std::size_t level = 0; level < tones.curve.size(); ++level) {
     const auto at = static_cast<double>(level);
-    curve[level] =
+    tones.curve[level] =
         static_cast<std::uint8_t>(std::clamp(at + difference_at(knots, at) + 0.5, 0.0, 255.0));
   }
-  return curve;
+  std::vector<double> apart;
+  for (const LevelPair& pair : pairs) {
+    apart.push_back(std::abs(tones.curve[static_cast<std::size_t>(pair.from)] - pair.to));
+  }
+  constexpr double of_upper_quartile = 1.5;
+  tones.tolerance =
+      static_cast<int>(of_upper_quartile * quantile(std::move(apart), 0.75, QuantileKind::linear));
+  return tones;
 }
 
 std::vector<LevelPair> level_pairs(const CensusCosts& costs,

@@ -21,10 +21,18 @@ struct LevelPair {
   int from = 0, to = 0;
 };
 
-/// The curve through the mean differences of the pairs in eighths of the range of `from`, of those
-/// with at least 15; linear between, constant beyond them. Means are of the middle half, which
-/// bears wrong pairs. std::nullopt if there are too few: nothing is known of the tones.
-std::optional<ToneCurve> tone_curve(const std::vector<LevelPair>& pairs);
+/// What is known of the levels of a surface in two images.
+struct Tones {
+  ToneCurve curve;
+  /// What the levels of a surface may differ by after it, where light and view change them: one and
+  /// a half times the upper quartile of the pairs' differences.
+  int tolerance = 0;
+};
+
+/// The curve goes through the mean differences of the pairs in eighths of the range of `from`, of
+/// those with at least 15; linear between, constant beyond them. Means are of the middle half,
+/// which bears wrong pairs. std::nullopt if there are too few: nothing is known of the tones.
+std::optional<Tones> tones_of(const std::vector<LevelPair>& pairs);
 
 /// Pairs of levels beside points, from the other image to the points' own, where the census alone
 /// tells the place in the other image: of at most 600 points, those with a cost below 0.7 of the

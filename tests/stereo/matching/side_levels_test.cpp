@@ -83,7 +83,8 @@ TEST(SideLevels, AddTheirDifferencesToTheCosts) {
     }
   }
   const PointsByRow points = points_by_row(x, y, height);
-  const SideLevels sides{own_levels, there, offsets};
+  constexpr int tolerance = 5;
+  const SideLevels sides{own_levels, there, offsets, tolerance};
   CensusCosts plain{points, own, other, first, Facing::opposite, disparities}, both = plain;
   both.sides = &sides;
   std::vector<std::int16_t> of_census(disparities), costs(disparities);
@@ -99,7 +100,7 @@ TEST(SideLevels, AddTheirDifferencesToTheCosts) {
           const int row = std::clamp(points.y[k] + side * offsets[k][1], 0, height - 1);
           const int apart = own_levels.row(row)[points.x[k] + side * offsets[k][0]] -
                             right_levels.row(row)[at + side * offsets[k][0]];
-          cost += side_weight * std::min<int>(std::abs(apart), most_side_levels);
+          cost += side_weight * std::clamp<int>(std::abs(apart) - tolerance, 0, most_side_levels);
         }
       }
       ASSERT_EQ(costs[static_cast<std::size_t>(d)], cost) << p << " " << d;
@@ -110,7 +111,7 @@ TEST(SideLevels, AddTheirDifferencesToTheCosts) {
   }
 }
 
-TEST(ToneCurve, IsTheUsualDifference) {
+TEST(Tones, AreTheUsualDifference) {
   RandomStream draws = side_draws(305);
   std::vector<LevelPair> pairs;
   const auto brighter = [](double level) { return 30 + 0.8 * level; };
@@ -120,13 +121,29 @@ TEST(ToneCurve, IsTheUsualDifference) {
     pairs.push_back({from, is_wrong ? static_cast<int>(draws.below(256))
                                     : static_cast<int>(std::lround(brighter(from)))});
   }
-  const ToneCurve curve = tone_curve(pairs).value();
+  const ToneCurve curve = tones_of(pairs).value().curve;
   for (std::size_t level = 40; level < 200; ++level) {
     EXPECT_NEAR(curve[level], brighter(static_cast<double>(level)), 4) << level;
   }
   EXPECT_TRUE(std::is_sorted(curve.begin(), curve.end()));
   // Too few pairs say nothing.
-  EXPECT_FALSE(tone_curve({pairs.begin(), pairs.begin() + 14}).has_value());
+  EXPECT_FALSE(tones_of({pairs.begin(), pairs.begin() + 14}).has_value());
+}
+
+TEST(Tones, TolerateWhatLightChanges) {
+  RandomStream draws = side_draws(310);
+  const auto tolerance_at = [&](double sigma) {
+    std::vector<LevelPair> pairs;
+    for (int i = 0; i < 4000; ++i) {
+      const int from = 60 + static_cast<int>(draws.below(130));
+      pairs.push_back({from, static_cast<int>(std::lround(from + sigma * draws.normal()))});
+    }
+    return tones_of(pairs).value().tolerance;
+  };
+  constexpr double quartile = 1.1503;  // of |N(0, 1)|, the upper one
+  EXPECT_EQ(tolerance_at(0), 0);
+  EXPECT_NEAR(tolerance_at(4), 1.5 * quartile * 4, 1.5);
+  EXPECT_NEAR(tolerance_at(16), 1.5 * quartile * 16, 1.5);
 }
 
 /// Upright bars of equal width and distance, but of different greys: by the signs of the steps

@@ -32,8 +32,9 @@ constexpr double smoothing_px = 0.8;  // against aliasing of sharp images, which
                                       // to integer pixels: 0.05 px, 0.02 with it
 constexpr double min_found = 0.7;     // ZNCC at half size
 constexpr double min_margin = 0.05;
-constexpr double max_shift_px = 2;  // of the alignment, from twice the half-size peak
-constexpr int min_side_px = 48;     // of an image; smaller images have no matches
+constexpr double min_repeated = 0.9;  // ZNCC of a match that is one of several
+constexpr double max_shift_px = 2;    // of the alignment, from twice the half-size peak
+constexpr int min_side_px = 48;       // of an image; smaller images have no matches
 
 void check(const RectifiedPair& pair,
            const DisparityRange& range,
@@ -87,6 +88,9 @@ cv::Point pixel_of(const ImageCorner& corner) {
           static_cast<int>(std::lround(corner.pixel_px.y()))};
 }
 
+/// Corners' partners: the only similar place, or also one of several that are very similar.
+enum class Partners { only, all };
+
 /// Both images at full size, smoothed, and a search structure for each at half size.
 struct FieldSearch {
   cv::Mat half_left, half_right, left, right;
@@ -104,13 +108,14 @@ struct FieldSearch {
         max_x(static_cast<int>(std::ceil(0.5 * range.max_px)) + 1),
         rows((band_px + 1) / 2) {}
 
-  /// Half-size position in the right image of a half-size left pixel, if unambiguous and confirmed
-  /// by the reverse search.
-  std::optional<Eigen::Vector2d> view_label(cv::Point p) {
+  /// Half-size position in the right image of a half-size left pixel, if confirmed by the reverse
+  /// search and the only one that is similar or, if `kind` is all, very similar.
+  std::optional<Eigen::Vector2d> partner(cv::Point p, Partners kind) {
     const auto there =
         in_right.find(half_left, p, {p.x - max_x, p.x - min_x, p.y - rows, p.y + rows});
     if (!there || there->score < min_found) return std::nullopt;
-    if (there->second > there->score - min_margin) return std::nullopt;
+    const bool is_only = there->second <= there->score - min_margin;
+    if (!is_only && (kind == Partners::only || there->score < min_repeated)) return std::nullopt;
     const cv::Point q = there->pixel;
     const auto back =
         in_left.find(half_right, q, {q.x + min_x, q.x + max_x, q.y - rows, q.y + rows});
@@ -123,11 +128,12 @@ struct FieldSearch {
 
 std::vector<VerticalOffset> row_offsets(FieldSearch& search,
                                         const std::vector<ImageCorner>& corners,
+                                        Partners kind,
                                         const VerticalFieldOptions& options) {
   std::vector<VerticalOffset> offsets;
   for (const ImageCorner& corner : corners) {
     const cv::Point p = pixel_of(corner);
-    const auto place = search.view_label(p);
+    const auto place = search.partner(p, kind);
     if (!place) continue;
     // The integer left pixel half a pixel from the patch centre needs no interpolation.
     const Eigen::Vector2d left_px(2 * p.x + 1, 2 * p.y + 1);
@@ -197,8 +203,14 @@ VerticalField found_field(const RectifiedPair& pair,
     const cv::Point p = pixel_of(corner);
     return !has_texture(search.half_left, p, half_px) || (left_valid && !is_valid(*left_valid, p));
   });
-  return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
-                            size, options);
+  const auto field = [&](Partners kind) {
+    return fit_vertical_field(row_offsets(search, corners, kind, options),
+                              static_cast<int>(corners.size()), size, options);
+  };
+  VerticalField of_only = field(Partners::only);
+  if (of_only.known) return of_only;
+  VerticalField of_all = field(Partners::all);
+  return of_all.unrectified ? of_only : of_all;
 }
 
 }  // namespace

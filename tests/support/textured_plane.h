@@ -41,7 +41,8 @@ struct TexturedPlane {
 
 /// What a camera of the rig sees: 3 x 3 samples a pixel behind a point spread of about 0.5 px.
 /// CV_32F.
-inline cv::Mat photograph(const TexturedPlane& plane, const Rig& rig, int camera) {
+template <class Plane>
+cv::Mat photograph(const Plane& plane, const Rig& rig, int camera) {
   constexpr int fine = 3;
   const Camera& c = rig.cameras[camera];
   cv::Mat image(fine * c.size_px[1], fine * c.size_px[0], CV_32F), pixels;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -224,6 +225,45 @@ TEST(VerticalField, ImagesThatAreNotRectifiedAreSaidToBe) {
   EXPECT_TRUE(field.unrectified);
   EXPECT_FALSE(field.known);
   EXPECT_NE(describe(field).find("not of one scene"), std::string::npos);
+}
+
+/// A chessboard in front of a plain wall, turned a little in its plane.
+struct ChessPlane : test::TexturedPlane {
+  double turn_rad = 0;
+
+  double grey(const Eigen::Vector3d& X) const {
+    const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+    const double x = (c * X.x() + s * X.y()) / square_m, y = (-s * X.x() + c * X.y()) / square_m;
+    if (std::abs(x) > 5 || std::abs(y) > 3.5) return 150;
+    const bool is_dark = (std::lround(std::floor(x)) + std::lround(std::floor(y))) % 2 != 0;
+    return is_dark ? 35 : 220;
+  }
+};
+
+RectifiedPair of_board(const ChessPlane& left, const ChessPlane& right, const Rig& rig) {
+  RandomStream draws({.seed = 7, .source = 208});
+  RectifiedPair pair;
+  pair.left = test::grey_levels(test::with_noise(photograph(left, rig, 0), 1.5, draws));
+  pair.right = test::grey_levels(test::with_noise(photograph(right, rig, 1), 1.5, draws));
+  return pair;
+}
+
+/// Of a chessboard's corners hardly one has a single partner, yet their rows tell the field.
+TEST(VerticalField, IsThatOfAPatternThatRepeats) {
+  for (const double turn_rad : {0.02, 0.2}) {
+    const ChessPlane board{{.normal = {0.05, -0.1, 0.7}, .square_m = 0.1}, turn_rad};
+    const VerticalField level = vertical_field(of_board(board, board, pair_rig()), {0, 64});
+    EXPECT_TRUE(level.known) << describe(level);
+    EXPECT_FALSE(level.unrectified || level.misaligned);
+    EXPECT_LT(level.largest_px(), 0.2);
+    const VerticalField lower = vertical_field(of_board(board, board, pair_rig(2)), {0, 64});
+    EXPECT_TRUE(lower.known && lower.misaligned) << describe(lower);
+    EXPECT_NEAR(lower.dy_px(200, 150), 2, 0.2);
+  }
+  // Another board is not taken for the same.
+  const ChessPlane one{{.normal = {0.05, -0.1, 0.7}, .square_m = 0.1}, 0.1},
+      other{{.normal = {-0.3, 0.2, 0.6}, .square_m = 0.1}, -0.3};
+  EXPECT_FALSE(vertical_field(of_board(one, other, pair_rig()), {0, 64}).known);
 }
 
 TEST(VerticalField, TooLittleToTellIsSaid) {

@@ -210,7 +210,7 @@ VerticalField found_field(const RectifiedPair& pair,
   VerticalField of_only = field(Partners::only);
   if (of_only.known) return of_only;
   VerticalField of_all = field(Partners::all);
-  return of_all.unrectified ? of_only : of_all;
+  return of_all.known ? of_all : of_only;
 }
 
 }  // namespace

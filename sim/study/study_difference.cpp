@@ -13,6 +13,7 @@
 
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/system_reader.h"
 #include "sim/study/told_settings.h"
 
 namespace vernier::sim::internal {
@@ -24,6 +25,7 @@ std::vector<std::string> differing_settings(const StudyCell& stored, const Study
   std::vector<std::string> all;
   for (const auto& [key, value] : stored.settings) {
     if (key == "rig.truth" || key == "calibration.observations") continue;  // by content
+    if (applies_on_reading(key)) continue;
     const auto other = wanted.settings.find(key);
     if (other == wanted.settings.end() || other->second != value) {
       all.push_back(fmt::format("{} is {} there and {} here", key, value,
@@ -31,7 +33,7 @@ std::vector<std::string> differing_settings(const StudyCell& stored, const Study
     }
   }
   for (const auto& [key, value] : wanted.settings) {
-    if (names_a_file(key) || stored.settings.contains(key)) continue;
+    if (names_a_file(key) || applies_on_reading(key) || stored.settings.contains(key)) continue;
     all.push_back(fmt::format("{} is not set there and {} here", key, value));
   }
   return all;

@@ -35,6 +35,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
 #include "sim/study/system_kind.h"
+#include "sim/study/system_reader.h"
 #include "sim/study/told_settings.h"
 #include "sim/told/fresh_calibrations.h"
 #include "sim/visibility.h"
@@ -201,7 +202,7 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   settings.merge(settings_of(cell.told));  // also those that are not shown, as all stores have them
   for (const auto& [name, value] : settings) {
     if (name == "localiser.knows_endpoint_sigma" || left_out.contains(name)) continue;
-    if (!names_a_file(name)) key[name] = value;
+    if (!names_a_file(name) && !applies_on_reading(name)) key[name] = value;
   }
   // Older stores had no such setting and this value; their results remain valid.
   const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);

@@ -25,6 +25,7 @@
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
 #include "sim/study/system_kind.h"
+#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -84,6 +85,7 @@ std::vector<TrialResult> wanted_trials(StoredBlock block,
                 "delete the stores of the folder and run the study again");
   }
   block.trials.resize(static_cast<std::size_t>(job.count));
+  if (measures) apply_limit(cell.system, block.trials);
   return std::move(block.trials);
 }
 

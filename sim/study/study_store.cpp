@@ -270,6 +270,7 @@ bool holds_results(const StoreIndex& index) {
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place) {
   const auto untimed = [](TrialResult trial) {
     trial.cpu_ms = trial.wall_ms = 0;
+    trial.limit = success_radius_m;  // that of a study, not of a result
     return trials_text({trial});
   };
   for (std::size_t i = 0; i < std::min(a.trials.size(), b.trials.size()); ++i) {

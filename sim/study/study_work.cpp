@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -17,10 +18,13 @@
 #include "calib/interval.h"
 #include "sim/study/budget.h"
 #include "sim/study/ceiling.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
+#include "sim/study/study_store.h"
+#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -64,23 +68,56 @@ bool MissingWork::empty() const {
                                        [](const std::vector<int>& of) { return of.empty(); });
 }
 
+namespace {
+
+/// Trials and successes of a stored block by the cell's limit: a row counts by that of the study
+/// that made it.
+ClusterCount count_in(const StudyCell& cell,
+                      const std::string& key,
+                      int block,
+                      const StoredResults& stored) {
+  const ClusterCount count = stored.count(key, block);
+  if (cell.system.is_localiser() || count.trials == 0) return count;
+  std::vector<StoredBlock> read = stored.read({key, block, block + 1});
+  if (read.empty()) return {};
+  apply_limit(cell.system, read[0].trials);
+  const std::array<int, 3> counted = row_counts(read[0].trials);
+  return {.successes = counted[2], .trials = counted[0]};
+}
+
+/// What several cells that share their blocks want, the most of them.
+std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_cells) {
+  std::vector<int> wanted(of_cells.size(), 0);
+  for (std::size_t i = 0; i < of_cells.size(); ++i) {
+    int& most = wanted[static_cast<std::size_t>(work.same_as[i])];
+    most = std::max(most, of_cells[i]);
+  }
+  return wanted;
+}
+
+}  // namespace
+
 std::vector<BudgetDecision> budget_decisions(const Study& study,
                                              const StudyWork& work,
                                              const StoredResults& stored) {
   const std::size_t cells = work.cell_keys.size();
-  std::vector<std::vector<ClusterCount>> first(cells);  // without a gap
-  std::vector<int> all(cells, 0);
-  for (const BlockJob& job : work.blocks) {
-    const auto cell = static_cast<std::size_t>(job.cell);
-    all[cell] = std::max(all[cell], job.block + 1);
-    if (static_cast<int>(first[cell].size()) != job.block) continue;
-    const ClusterCount count = stored.count(work.cell_keys[cell], job.block);
-    if (count.trials >= job.count) first[cell].push_back(count);
-  }
+  std::vector<std::vector<BlockJob>> jobs(cells);
+  for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
+  const bool counts = study.file.interval_width.has_value();
   std::vector<BudgetDecision> decisions;
   for (std::size_t i = 0; i < cells; ++i) {
-    const auto cell = static_cast<std::size_t>(work.same_as[i]);
-    decisions.push_back(budget_decision(first[cell], all[cell], study.file.interval_width));
+    const StudyCell& cell = study.file.cells[i];
+    const std::vector<BlockJob>& all = jobs[static_cast<std::size_t>(work.same_as[i])];
+    std::vector<ClusterCount> first;  // without a gap
+    for (const BlockJob& job : all) {
+      const std::string& key = work.cell_keys[i];
+      const ClusterCount count =
+          counts ? count_in(cell, key, job.block, stored) : stored.count(key, job.block);
+      if (count.trials < job.count) break;
+      first.push_back(count);
+    }
+    decisions.push_back(
+        budget_decision(first, static_cast<int>(all.size()), study.file.interval_width));
   }
   return decisions;
 }
@@ -90,11 +127,15 @@ MissingWork missing_work(const Study& study,
                          const Shard& shard,
                          const StoredResults& stored) {
   MissingWork missing;
-  const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
+  std::vector<int> of_cells;
+  for (const BudgetDecision& decision : budget_decisions(study, work, stored)) {
+    of_cells.push_back(decision.wanted);
+  }
+  const std::vector<int> wanted = most_wanted(work, of_cells);
   const int count = static_cast<int>(work.blocks.size());
   for (int i = shard.index; i < count; i += shard.count) {
     const BlockJob& job = work.blocks[static_cast<std::size_t>(i)];
-    if (job.block >= decisions[static_cast<std::size_t>(job.cell)].wanted) continue;
+    if (job.block >= wanted[static_cast<std::size_t>(job.cell)]) continue;
     if (stored.trials(work.cell_keys[job.cell], job.block) < job.count) missing.blocks.push_back(i);
   }
   for (const CeilingJob& ceiling : work.ceilings) {
@@ -112,11 +153,7 @@ MissingWork missing_blocks(const StudyWork& work,
                            const StoredResults& stored) {
   MissingWork missing;
   missing.queries.resize(work.ceilings.size());
-  std::vector<int> wanted(first_blocks.size(), 0);  // of cells that do not differ, the most
-  for (std::size_t i = 0; i < first_blocks.size(); ++i) {
-    int& most = wanted[static_cast<std::size_t>(work.same_as[i])];
-    most = std::max(most, first_blocks[i]);
-  }
+  const std::vector<int> wanted = most_wanted(work, first_blocks);
   for (std::size_t i = 0; i < work.blocks.size(); ++i) {
     const BlockJob& job = work.blocks[i];
     if (job.block >= wanted[static_cast<std::size_t>(job.cell)]) continue;

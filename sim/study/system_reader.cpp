@@ -263,6 +263,8 @@ std::map<std::string, std::string> settings_of(const SystemSettings& system) {
   return all;
 }
 
+bool applies_on_reading(const std::string& key) { return key == "system.success_error"; }
+
 bool uses_setting(const SystemKind& kind, const std::string& key) {
   const std::string section = key.substr(0, key.find('.'));
   if (section == "rig") return true;

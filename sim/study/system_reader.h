@@ -47,6 +47,10 @@ void check_options_are_used(const StudyFile& study);
 /// The system's settings by dotted key; none of a localiser's.
 std::map<std::string, std::string> settings_of(const SystemSettings& system);
 
+/// Whether trials are the same whatever the setting is, by its dotted key: what counts as a
+/// success.
+bool applies_on_reading(const std::string& key);
+
 /// Whether a setting of an experiment, by its dotted key, is of those that the system uses.
 bool uses_setting(const SystemKind& kind, const std::string& key);
 

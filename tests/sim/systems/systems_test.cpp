@@ -167,6 +167,64 @@ TEST(Systems, ABudgetByWidthStopsThem) {
   }
 }
 
+/// What counts as a success is asked of stored trials: no trial is made for it.
+TEST(Systems, AnotherLimitNeedsNoNewTrials) {
+  const auto with_limit = [](const std::string& study, const std::string& limit) {
+    std::string text = study;
+    const std::string usual = "success_error = 0.05";
+    return system_study(text.replace(text.find(usual), usual.size(), "success_error = " + limit));
+  };
+  const test::TestFolder folder("systems");
+  const Study loose = with_limit(calibrations, "0.05");
+  run_study(loose, {folder / "a", 2, {}, {}, {}});
+  const StudyResults before = study_results(loose, folder / "a");
+  for (const std::string limit : {"0.01", "0.02"}) {
+    const Study strict = with_limit(calibrations, limit);
+    EXPECT_EQ(study_difference(loose, strict), "");
+    int asked = -1;
+    StudyRun run{folder / "a", 2, {}, {}, {}};
+    run.progress = [&](int, int total) { asked = total; };
+    run_study(strict, run);
+    EXPECT_EQ(asked, 0);
+    const StudyResults after = study_results(strict, folder / "a");
+    for (std::size_t c = 0; c < after.cells.size(); ++c) {
+      const std::vector<TrialResult>& trials = before.cells[c].trials;
+      ASSERT_EQ(after.cells[c].trials.size(), trials.size());
+      const auto within = std::count_if(trials.begin(), trials.end(), [&](const TrialResult& t) {
+        return t.answered() && t.error <= std::stod(limit);
+      });
+      EXPECT_DOUBLE_EQ(after.cells[c].summary.success, static_cast<double>(within) / 36);
+      EXPECT_LT(after.cells[c].summary.success, before.cells[c].summary.success);
+    }
+  }
+}
+
+/// Cells that differ in it share their trials, and each goes as far as its own interval needs.
+TEST(Systems, SweptLimitsShareTrialsAndHaveTheirOwnBudgets) {
+  const std::string start =
+                        "[study]\ntrials = 900\nseed = 3\ninterval_width = 0.3\n"
+                        "[system]\nname = \"calibration\"\nrange_m = 4\n",
+                    end = "[calibration]\nviews = 4\npixel_sigma_px = 0.3\n";
+  const auto limited = [&](const std::string& limit) {
+    return system_study(start + "success_error = " + limit + "\n" + end);
+  };
+  const Study swept = system_study(start + end + "[sweep]\n\"system.success_error\" = [1, 0.03]\n");
+  const test::TestFolder folder("systems");
+  run_study(swept, {folder / "a", 2, {}, {}, {}});
+  const StudyResults both = study_results(swept, folder / "a");
+  ASSERT_EQ(both.cells.size(), 2U);
+  EXPECT_LT(both.cells[0].summary.trials, both.cells[1].summary.trials);  // one hardly scatters
+  int place = 0;
+  for (const std::string limit : {"1", "0.03"}) {
+    const Study alone = limited(limit);
+    run_study(alone, {folder / limit, 1, {}, {}, {}});
+    const CellResult& cell = study_results(alone, folder / limit).cells[0];
+    EXPECT_EQ(both.cells[place].summary.trials, cell.summary.trials);
+    EXPECT_EQ(both.cells[place].summary.success, cell.summary.success);
+    ++place;
+  }
+}
+
 TEST(Systems, AServoingTrialIsThatOfTheExperiment) {
   const Study study = system_study(
       "[study]\ntrials = 12\nseed = 4\n[system]\nname = \"servoing\"\ngoal = \"recorded\"\n"

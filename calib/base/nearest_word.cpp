@@ -31,13 +31,14 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
   return row[to.size()];
 }
 
+constexpr std::size_t most_bytes = 100;  ///< of a word that are compared
+
 struct Nearest {
   std::string word;
   std::size_t distance = std::string::npos;
 };
 
 Nearest nearest(std::string_view word, const std::vector<std::string_view>& known) {
-  constexpr std::size_t most_bytes = 100;
   word = word.substr(0, most_bytes);
   Nearest best;
   for (const std::string_view candidate : known) {
@@ -52,7 +53,8 @@ Nearest nearest(std::string_view word, const std::vector<std::string_view>& know
 std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known) {
   constexpr std::size_t few = 20;
   const Nearest best = nearest(word, known);
-  if (2 * best.distance <= std::max(word.size(), std::size_t{2}) || known.size() > few) {
+  const std::size_t size = std::min(word.size(), most_bytes);
+  if (2 * best.distance <= std::max(size, std::size_t{2}) || known.size() > few) {
     return "did you mean '" + shortened(best.word) + "'?";
   }
   std::vector<std::string> quoted;

@@ -77,7 +77,10 @@ FolderClaim::Found FolderClaim::find_study(const Study& wanted) const {
     throw Error(folder_.string(), "holds another study: " + why,
                 "give another -o DIR, or go on with the study file of that folder");
   }
-  return study_difference(wanted, stored).empty() ? Found::same : Found::less;
+  if (!study_difference(wanted, stored).empty()) return Found::less;
+  const bool same_limits =
+      limit_difference(stored, wanted).empty() && limit_difference(wanted, stored).empty();
+  return same_limits ? Found::same : Found::other_limits;
 }
 
 /// Inputs that another shard has just written, or a killed one, are no obstacle; neither are hidden
@@ -98,7 +101,8 @@ void FolderClaim::refuse_other_files() const {
 }
 
 void FolderClaim::extend() const {
-  if (found_ == Found::less) write_inputs(folder_, inputs_);
+  const bool differs = found_ == Found::less || found_ == Found::other_limits;
+  if (differs) write_inputs(folder_, inputs_);
 }
 
 void FolderClaim::remove_empty_store(const fs::path& store) const {

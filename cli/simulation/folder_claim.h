@@ -20,15 +20,16 @@ class FolderClaim {
   /// holds another study (naming a setting that differs) or other files.
   FolderClaim(const Study& wanted, StudyInputs inputs, std::filesystem::path folder);
 
-  /// Replaces the inputs by those of the wanted study if it extends the one of the folder. Only
-  /// for who may write the store.
+  /// Replaces the inputs by those of the wanted study if it extends the one of the folder, or has
+  /// other limits of success. Only for who may write the store, or has nothing to add to it.
   void extend() const;
 
   /// Removes what the constructor and a run of the shard made, as long as no result is stored.
   void withdraw(const Shard& shard) const noexcept;
 
  private:
-  enum class Found { nothing, same, less };
+  /// `other_limits`: the same trials, of which others count as successes.
+  enum class Found { nothing, same, less, other_limits };
 
   Found find_study(const Study& wanted) const;
   void refuse_other_files() const;

@@ -182,8 +182,8 @@ void check_covariances(const Study& study) {
                             is_truth ? study.file.rig : told.file),
                 is_truth ? "calibrate it with vernier calibrate, or set sources.calibration = 0: "
                            "it is then told exactly"
-                         : "calibrate it with vernier calibrate, or set rig.error = \"given\": it "
-                           "is then told as it is");
+                         : "calibrate it with vernier calibrate, or set rig.error = \"given\": its "
+                           "difference from rig.truth, times sources.calibration, is then told");
   }
 }
 

@@ -47,6 +47,8 @@ StoredResults read_parts(const std::vector<fs::path>& parts,
     const Study study = open_folder(part, session);
     std::string why = study_difference(study, first);
     if (why.empty()) why = study_difference(first, study);
+    if (why.empty()) why = limit_difference(study, first);
+    if (why.empty()) why = limit_difference(first, study);
     if (!why.empty()) {
       throw Error(part.string(),
                   "is not part of the same study as " + parts[0].string() + ": " + why,

@@ -61,6 +61,7 @@ void run_in_folder(const FolderClaim& claim,
     throw;
   }
   if (stop.came()) end();
+  claim.extend();  // where no trial was missing
 }
 
 namespace {

@@ -155,8 +155,8 @@ double rms_row_error(const ToldTruth& truth) {
     ++count;
   }
   constexpr double rounding_px = 1e-9;  // of an exact rig
-  const double rms_px = std::sqrt(squares / count);
   if (count == 0) return unknown;
+  const double rms_px = std::sqrt(squares / count);
   return rms_px < rounding_px ? 0 : rms_px;
 }
 
@@ -217,20 +217,18 @@ class MatcherSystem : public SystemUnderTest {
                                                  const std::vector<EdgePoint>& edges,
                                                  const stereo::DisparityRange& range,
                                                  TrialResult& result) const {
-    const ThreadClock clock;
-    const auto note_times = [&] {
-      result.wall_ms = clock.wall_ms();
-      // A program's own time is not known: it counts by the wall, with what is done beside it.
-      result.cpu_ms = cell_.system.command().empty() ? clock.cpu_ms() : result.wall_ms;
+    struct Timer {
+      bool is_program;
+      TrialResult& result;
+      ThreadClock clock = {};
+      ~Timer() {
+        result.wall_ms = clock.wall_ms();
+        // A program's own time is not known: it counts by the wall, with what is done beside it.
+        result.cpu_ms = is_program ? result.wall_ms : clock.cpu_ms();
+      }
     };
-    try {
-      std::vector<stereo::EdgeDisparity> found = matcher_.match(pair, edges, range);
-      note_times();
-      return found;
-    } catch (...) {
-      note_times();
-      throw;
-    }
+    const Timer timer{!cell_.system.command().empty(), result};
+    return matcher_.match(pair, edges, range);
   }
 
   static void score(const MatcherScore& score,
@@ -321,10 +319,13 @@ SystemKind matcher_kind() {
                    {"density", "share of these that are matched"},
                    {"bad_1", "share of the matched that is more than 1 px off"},
                    {"mismatch",
-                    "share that is more than 3 px off, with edges that one camera sees"},
+                    "share of all matched edges that is more than 3 px off, those that one camera "
+                    "sees included"},
                    {"rms_inlier_px", "RMS of disparity errors up to 1 px, px"},
-                   {"bias_inlier_px", "their mean, px"},
-                   {"z_rms", "RMS of errors over stated standard deviations; expected: 1"},
+                   {"bias_inlier_px", "mean of disparity errors up to 1 px, px"},
+                   {"z_rms",
+                    "RMS of errors up to 1 px over stated standard deviations, on smooth surfaces; "
+                    "expected: 1"},
                    {"depth_error", "median of |true depth / depth - 1| of what is right to 1 px"},
                    {"row_error_px", "RMS of how many rows apart the images of a point are, px"}},
       .sections = {"world", "camera", "sources", "calibration"},

@@ -113,4 +113,20 @@ std::string study_difference(const Study& stored, const Study& wanted) {
   return "";
 }
 
+std::string limit_difference(const Study& stored, const Study& wanted) {
+  for (const StudyCell& cell : stored.file.cells) {
+    const StudyCell* other = nullptr;
+    bool has_same = false;
+    for (const StudyCell& of_wanted : wanted.file.cells) {
+      if (!differing_settings(cell, of_wanted).empty()) continue;
+      other = &of_wanted;
+      has_same = has_same || of_wanted.system.success_error == cell.system.success_error;
+    }
+    if (has_same || !other) continue;
+    return fmt::format("system.success_error is {} there and {} here", cell.system.success_error,
+                       other->system.success_error);
+  }
+  return "";
+}
+
 }  // namespace vernier::sim::internal

@@ -14,4 +14,8 @@ namespace vernier::sim::internal {
 /// determines results counts, not the layout of the files.
 std::string study_difference(const Study& stored, const Study& wanted);
 
+/// What counts as a success there and not here, in words; empty: the same in all cells. It decides
+/// nothing about whether stored trials are wanted.
+std::string limit_difference(const Study& stored, const Study& wanted);
+
 }  // namespace vernier::sim::internal

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -25,7 +26,6 @@
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
 #include "sim/study/system_kind.h"
-#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -37,6 +37,8 @@ StudyResults without_trials(const Study& study,
                             const StoredResults& stored) {
   StudyResults results;
   const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
+  const std::vector<int> wanted = most_wanted(work, blocks_wanted(decisions));
+  results.blocks_total = std::accumulate(wanted.begin(), wanted.end(), 0);
   std::set<std::string> commands, machines;
   for (const auto& [key, value] : stored.notes()) {
     if (key == command_key(value)) commands.insert(value);
@@ -58,9 +60,6 @@ StudyResults without_trials(const Study& study,
     }
     result.interval_width = study.file.interval_width;
     result.budget = decisions[results.cells.size()];
-    if (work.same_as[results.cells.size()] == static_cast<int>(results.cells.size())) {
-      results.blocks_total += result.budget.wanted;
-    }
     results.cells.push_back(std::move(result));
   }
   return results;
@@ -85,7 +84,6 @@ std::vector<TrialResult> wanted_trials(StoredBlock block,
                 "delete the stores of the folder and run the study again");
   }
   block.trials.resize(static_cast<std::size_t>(job.count));
-  if (measures) apply_limit(cell.system, block.trials);
   return std::move(block.trials);
 }
 
@@ -150,27 +148,31 @@ StudyResults visit_blocks(const Study& study,
   const std::size_t cells = results.cells.size();
   std::vector<std::vector<BlockJob>> jobs(cells);
   for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
-  constexpr int at_a_time = 200;  // blocks read together
+  std::vector<int> done_of(cells, 0);  // blocks of cells that share them, the most
+  constexpr int at_a_time = 200;       // blocks read together
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const auto source = static_cast<std::size_t>(work.same_as[cell]);
     const int wanted = results.cells[cell].budget.wanted;  // fewer: a cell that has stopped
     CellResult& result = results.cells[cell];
     CellTally tally(result);
+    int done = 0;
     for (int from = 0; from < wanted; from += at_a_time) {
       const int end = std::min(from + at_a_time, wanted);
-      for (StoredBlock& block : stored.read({work.cell_keys[cell], from, end})) {
+      for (StoredBlock& block : blocks_of(result.cell, {work.cell_keys[cell], from, end}, stored)) {
         const BlockJob& job = jobs[source][static_cast<std::size_t>(block.block)];
         if (static_cast<int>(block.trials.size()) < job.count) continue;
         const std::vector<TrialResult> trials =
             wanted_trials(std::move(block), result.cell, job, folder);
-        if (source == cell) ++results.blocks_done;
+        ++done;
         result.maps.push_back(count_of(trials));
         if (figures == Figures::made) tally.add(trials);
         visit(cell, trials);
       }
     }
     if (figures == Figures::made) tally.finish();
+    done_of[source] = std::max(done_of[source], done);
   }
+  results.blocks_done = std::accumulate(done_of.begin(), done_of.end(), 0);
   return results;
 }
 

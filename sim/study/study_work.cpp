@@ -16,6 +16,7 @@
 
 #include "calib/base/fingerprint.h"
 #include "calib/interval.h"
+#include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/store_rows.h"
@@ -24,7 +25,6 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
-#include "sim/study/system_under_test.h"
 
 namespace vernier::sim::internal {
 
@@ -70,22 +70,52 @@ bool MissingWork::empty() const {
 
 namespace {
 
-/// Trials and successes of a stored block by the cell's limit: a row counts by that of the study
-/// that made it.
-ClusterCount count_in(const StudyCell& cell,
-                      const std::string& key,
-                      int block,
-                      const StoredResults& stored) {
-  const ClusterCount count = stored.count(key, block);
-  if (cell.system.is_localiser() || count.trials == 0) return count;
-  std::vector<StoredBlock> read = stored.read({key, block, block + 1});
-  if (read.empty()) return {};
-  apply_limit(cell.system, read[0].trials);
-  const std::array<int, 3> counted = row_counts(read[0].trials);
-  return {.successes = counted[2], .trials = counted[0]};
+/// Of the first blocks of a cell, without a gap.
+std::vector<ClusterCount> first_counts(const StudyCell& cell,
+                                       const std::string& key,
+                                       const std::vector<BlockJob>& jobs,
+                                       const StoredResults& stored) {
+  constexpr int at_a_time = 200;
+  std::vector<ClusterCount> first;
+  const int all = static_cast<int>(jobs.size());
+  for (int from = 0; from < all; from += at_a_time) {
+    const int end = std::min(from + at_a_time, all);
+    for (const StoredBlock& block : blocks_of(cell, {key, from, end}, stored)) {
+      const std::array<int, 3> counted = row_counts(block.trials);
+      const auto place = static_cast<std::size_t>(block.block);
+      if (place != first.size() || counted[0] < jobs[place].count) return first;
+      first.push_back({.successes = counted[2], .trials = counted[0]});
+    }
+    if (static_cast<int>(first.size()) < end) return first;
+  }
+  return first;
 }
 
-/// What several cells that share their blocks want, the most of them.
+/// The same by the counts of rows, whose successes may be by another limit.
+std::vector<ClusterCount> first_row_counts(const std::string& key,
+                                           const std::vector<BlockJob>& jobs,
+                                           const StoredResults& stored) {
+  std::vector<ClusterCount> first;
+  for (const BlockJob& job : jobs) {
+    const ClusterCount count = stored.count(key, job.block);
+    if (count.trials < job.count) break;
+    first.push_back(count);
+  }
+  return first;
+}
+
+}  // namespace
+
+std::vector<StoredBlock> blocks_of(const StudyCell& cell,
+                                   const BlockRange& range,
+                                   const StoredResults& stored) {
+  std::vector<StoredBlock> blocks = stored.read(range);
+  for (StoredBlock& block : blocks) {
+    for (TrialResult& trial : block.trials) trial.limit = cell.system.success_error;
+  }
+  return blocks;
+}
+
 std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_cells) {
   std::vector<int> wanted(of_cells.size(), 0);
   for (std::size_t i = 0; i < of_cells.size(); ++i) {
@@ -95,31 +125,30 @@ std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_c
   return wanted;
 }
 
-}  // namespace
-
 std::vector<BudgetDecision> budget_decisions(const Study& study,
                                              const StudyWork& work,
                                              const StoredResults& stored) {
   const std::size_t cells = work.cell_keys.size();
   std::vector<std::vector<BlockJob>> jobs(cells);
   for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
-  const bool counts = study.file.interval_width.has_value();
   std::vector<BudgetDecision> decisions;
   for (std::size_t i = 0; i < cells; ++i) {
     const StudyCell& cell = study.file.cells[i];
+    const std::string& key = work.cell_keys[i];
     const std::vector<BlockJob>& all = jobs[static_cast<std::size_t>(work.same_as[i])];
-    std::vector<ClusterCount> first;  // without a gap
-    for (const BlockJob& job : all) {
-      const std::string& key = work.cell_keys[i];
-      const ClusterCount count =
-          counts ? count_in(cell, key, job.block, stored) : stored.count(key, job.block);
-      if (count.trials < job.count) break;
-      first.push_back(count);
-    }
+    const bool by_limit = study.file.interval_width && !cell.system.is_localiser();
+    const std::vector<ClusterCount> first =
+        by_limit ? first_counts(cell, key, all, stored) : first_row_counts(key, all, stored);
     decisions.push_back(
         budget_decision(first, static_cast<int>(all.size()), study.file.interval_width));
   }
   return decisions;
+}
+
+std::vector<int> blocks_wanted(const std::vector<BudgetDecision>& decisions) {
+  std::vector<int> wanted;
+  for (const BudgetDecision& decision : decisions) wanted.push_back(decision.wanted);
+  return wanted;
 }
 
 MissingWork missing_work(const Study& study,
@@ -127,11 +156,8 @@ MissingWork missing_work(const Study& study,
                          const Shard& shard,
                          const StoredResults& stored) {
   MissingWork missing;
-  std::vector<int> of_cells;
-  for (const BudgetDecision& decision : budget_decisions(study, work, stored)) {
-    of_cells.push_back(decision.wanted);
-  }
-  const std::vector<int> wanted = most_wanted(work, of_cells);
+  const std::vector<int> wanted =
+      most_wanted(work, blocks_wanted(budget_decisions(study, work, stored)));
   const int count = static_cast<int>(work.blocks.size());
   for (int i = shard.index; i < count; i += shard.count) {
     const BlockJob& job = work.blocks[static_cast<std::size_t>(i)];

@@ -9,6 +9,7 @@
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
 
 namespace vernier::sim::internal {
 
@@ -43,10 +44,23 @@ StudyWork study_work(const Study& study);
 /// agree on it.
 std::string work_fingerprint(const StudyWork& work);
 
+/// The stored blocks of a range of a cell, their successes by the cell's limit: a row counts by
+/// that of the study that made it.
+std::vector<StoredBlock> blocks_of(const StudyCell& cell,
+                                   const BlockRange& range,
+                                   const StoredResults& stored);
+
+/// Of what each cell wants, the most of those that share its blocks, for the first of them; 0 for
+/// the others.
+std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_cells);
+
 /// How far each cell has to go, by what is stored (budget.h).
 std::vector<BudgetDecision> budget_decisions(const Study& study,
                                              const StudyWork& work,
                                              const StoredResults& stored);
+
+/// How many blocks each cell wants.
+std::vector<int> blocks_wanted(const std::vector<BudgetDecision>& decisions);
 
 /// What of it is not stored, of the blocks that are wanted so far.
 struct MissingWork {

@@ -30,10 +30,6 @@ std::shared_ptr<const ToldRigs> rigs_told(const SystemSetup& setup) {
   return drawn_rigs(RigSampler(setup.rig, "rig"), settings.sources.calibration, settings.seed);
 }
 
-void apply_limit(const SystemSettings& system, std::vector<TrialResult>& trials) {
-  for (TrialResult& trial : trials) trial.limit = system.success_error;
-}
-
 TrialResult failed_trial(const SystemSettings& system, std::uint32_t trial, std::string why) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   TrialResult failed;

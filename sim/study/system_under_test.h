@@ -46,9 +46,6 @@ std::vector<TrialResult> run_block(SystemUnderTest& system, const TrialBlock& bl
 /// covariance at the scale of sources.calibration; null if nothing is drawn.
 std::shared_ptr<const ToldRigs> rigs_told(const SystemSetup& setup);
 
-/// Sets what counts as a success in stored trials of a cell.
-void apply_limit(const SystemSettings& system, std::vector<TrialResult>& trials);
-
 /// A trial that could not be run, with limits of its cell.
 TrialResult failed_trial(const SystemSettings& system, std::uint32_t trial, std::string why);
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -97,8 +98,9 @@ void UnitComputer::try_program(const StudyCell& cell, const std::stop_token& sto
   }
   if (failures < most_failures) return;
   throw Error(place_of(study_.file, "system.command"),
-              fmt::format("the program failed in the first {} trials: {}", failures, why),
-              "run it by hand (docs/systems.md)");
+              fmt::format("the program {} failed in the first {} trials: {}",
+                          in_quotes(cell.system.command()), failures, why),
+              "run it by hand (docs/systems.md, docs/matchers.md)");
 }
 
 void UnitComputer::prepare_maps() {

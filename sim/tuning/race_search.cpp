@@ -55,8 +55,9 @@ bool RaceSearch::read_rounds(int candidate, const StudyWork& work, const StoredR
   if (end <= first) return false;
   scores.resize(static_cast<std::size_t>(end));
   for (const int cell : cells) {
+    const auto place = static_cast<std::size_t>(cell);
     for (const StoredBlock& block :
-         stored.read({work.cell_keys[static_cast<std::size_t>(cell)], first, end})) {
+         blocks_of(study_.file.cells[place], {work.cell_keys[place], first, end}, stored)) {
       for (int i = 0; i < trials_of(study_.file, block.block); ++i) {
         scores[static_cast<std::size_t>(block.block)].push_back(
             score(settings_.objective, block.trials[static_cast<std::size_t>(i)]));

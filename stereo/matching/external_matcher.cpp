@@ -42,9 +42,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> outputs =
      {"{output.png}", "output.png"},
      {"{output.npy}", "output.npy"}}};
 
-const std::vector<std::string> placeholders{"{left}",       "{right}",     "{least}",
-                                            "{most}",       "{output}",    "{output.pfm}",
-                                            "{output.png}", "{output.npy}"};
+std::vector<std::string> known_placeholders() {
+  std::vector<std::string> known{"{left}", "{right}", "{least}", "{most}"};
+  for (const auto& [placeholder, file] : outputs) known.emplace_back(placeholder);
+  return known;
+}
 
 /// Throws Error for a {name} that is replaced by nothing, in a word without blanks: others are
 /// scripts, which have braces of their own.
@@ -60,9 +62,10 @@ void check_placeholders(const std::string& word, const std::string& place) {
     const bool is_of_shell = at > 0 && word[at - 1] == '$';
     if (is_of_shell || end == at + 1 || end == word.size() || word[end] != '}') continue;
     const std::string name = word.substr(at, end + 1 - at);
-    if (std::find(placeholders.begin(), placeholders.end(), name) != placeholders.end()) continue;
+    const std::vector<std::string> known = known_placeholders();
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw Error(place, "has the unknown placeholder " + in_quotes(name),
-                "use " + alternatives(placeholders));
+                "use " + alternatives(known) + "; braces of your own need a blank in their word");
   }
 }
 

@@ -32,9 +32,10 @@ constexpr double smoothing_px = 0.8;  // against aliasing of sharp images, which
                                       // to integer pixels: 0.05 px, 0.02 with it
 constexpr double min_found = 0.7;     // ZNCC at half size
 constexpr double min_margin = 0.05;
-constexpr double min_repeated = 0.9;  // ZNCC of a match that is one of several
-constexpr double max_shift_px = 2;    // of the alignment, from twice the half-size peak
-constexpr int min_side_px = 48;       // of an image; smaller images have no matches
+constexpr double min_repeated = 0.9;        // ZNCC of a match that is one of several, of which …
+constexpr double min_share_repeated = 0.6;  // … so many agree: rows that repeat do not
+constexpr double max_shift_px = 2;          // of the alignment, from twice the half-size peak
+constexpr int min_side_px = 48;             // of an image; smaller images have no matches
 
 void check(const RectifiedPair& pair,
            const DisparityRange& range,
@@ -210,7 +211,8 @@ VerticalField found_field(const RectifiedPair& pair,
   VerticalField of_only = field(Partners::only);
   if (of_only.known) return of_only;
   VerticalField of_all = field(Partners::all);
-  return of_all.known ? of_all : of_only;
+  const bool agree = of_all.known && of_all.used >= min_share_repeated * of_all.matched;
+  return agree ? of_all : of_only;
 }
 
 }  // namespace

@@ -57,13 +57,13 @@ struct VerticalField {
 ///     searched in the right one by ZNCC over the disparities and the rows of the band, and back;
 ///  2. unambiguous matches are aligned at full size to sub-pixel accuracy
 ///     (stereo/image/patch_alignment.h);
-///     If they tell no field, corners with several very similar places in the right image are taken
-///     as well, as on a chessboard: the disparity of such a match may be wrong by a period, but its
-///     row is right if rows of the pattern are those of the images, and else it agrees on no field;
 ///  3. RANSAC over triples (Fischler and Bolles 1981), then iteratively reweighted least squares
 ///     with Tukey's biweight. The covariance is the M-estimator's sandwich, A⁻¹ B A⁻¹ (Huber,
 ///     "Robust Statistics", 1981, section 6.3), valid for any distribution of the match errors if
-///     they are independent.
+///     they are independent;
+///  4. if they tell no field: the same with corners that have several very similar places in the
+///     right image, as on a chessboard. The disparity of such a match may be wrong by a period and
+///     its row, on a board that is rolled, by a part of it: three in five must agree.
 ///
 /// Independent of the number of threads. Throws Error for images of different sizes or with too few
 /// values, an empty range, and options out of range.

@@ -172,6 +172,31 @@ class Systems(unittest.TestCase):
         self.refused(text.replace('{output}', '{output} {most_px}'), 'study.toml:9: ',
                      'unknown placeholder "{most_px}"; use {left}')
 
+    def test_every_program_of_a_study_is_tried(self):
+        text = EXAMPLES['program'].replace('command = "python3 own_system.py"\n', '').replace(
+            '[sweep]\n', '[sweep]\n"system.command" = ["python3 own_system.py", "false"]\n')
+        self.refused(text.replace('measured', 'command = "python3 own_system.py"\nmeasured', 1),
+                     'study.toml', '"false"')
+
+    def test_another_limit_is_asked_of_what_is_stored(self):
+        first = shorter('calibrations', 12)
+        self.run_study(first)
+        before = self.cells()
+        strict = first.replace('success_error = 0.05', 'success_error = 0.01')
+        self.run_study(strict)
+        after = self.cells()
+        for one, other in zip(before['cells'], after['cells']):
+            self.assertEqual(one['median_error'], other['median_error'])
+            self.assertEqual(other['success_error'], 0.01)
+        errors = [float(row['depth_error_m']) for row in self.rows('--trials')]
+        self.assertAlmostEqual(sum(cell['success'] * 12 for cell in after['cells']),
+                               sum(error <= 0.01 for error in errors))
+        self.assertEqual(after['blocks_done'], after['blocks_total'])
+        self.run_study(first, output='other')
+        done = self.call('study', 'merge', 'results', 'other', '-o', 'merged')
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('system.success_error is', done.stderr)
+
     def test_an_edited_program_begins_anew(self):
         self.run_study(shorter('program', 6))
         with open(self.folder / 'own_system.py', 'a', encoding='utf-8') as file:

@@ -122,7 +122,7 @@ class Refusals(Told):
         self.refused(STUDY + '[rig]\nfile = "bare.json"\n',
                      ':9: bare.json has no covariance to draw what is told of the rig from; calibrate it '
                      'with vernier calibrate, or set sources.calibration = 0')
-        self.refused(TOLD + 'file = "bare.json"\n', 'or set rig.error = "given": it is then told as it is')
+        self.refused(TOLD + 'file = "bare.json"\n', 'or set rig.error = "given": its difference from rig.truth')
         (self.folder / 'one.json').write_text(json.dumps(
             {'format': rig['format'], 'version': rig['version'], 'cameras': rig['cameras'][:1]}))
         self.refused(STUDY + '[rig]\nfile = "one.json"\n[sources]\ncalibration = 0\n',

@@ -121,7 +121,7 @@ function measured_tables(study) {
     ], cells, { wide: false }));
   }
   const meanings = study.system.measured ?? {};
-  const explained = names.filter((name) => meanings[name]);
+  const explained = names.filter((name) => Object.hasOwn(meanings, name));
   if (explained.length) {
     tables.push(table("What these quantities are", [
       { head: "Quantity", text: true, cell: (name) => element("code", {}, name) },

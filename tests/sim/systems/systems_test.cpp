@@ -214,6 +214,8 @@ TEST(Systems, SweptLimitsShareTrialsAndHaveTheirOwnBudgets) {
   const StudyResults both = study_results(swept, folder / "a");
   ASSERT_EQ(both.cells.size(), 2U);
   EXPECT_LT(both.cells[0].summary.trials, both.cells[1].summary.trials);  // one hardly scatters
+  EXPECT_EQ(both.blocks_done, both.cells[1].summary.trials / swept.file.trials_per_block);
+  EXPECT_EQ(both.blocks_total, both.blocks_done);
   int place = 0;
   for (const std::string limit : {"1", "0.03"}) {
     const Study alone = limited(limit);

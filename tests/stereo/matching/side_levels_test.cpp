@@ -191,6 +191,50 @@ TEST(EdgeMatcher, TellsBarsByTheirGreys) {
   EXPECT_LT(share_of_bars_found(1, false), 0.3);
 }
 
+/// Upright bars all alike in front of texture, the first and the last apart: support from these
+/// tells which is which. `shade` levels are added to the right image a period.
+double share_of_like_bars_found(double shade, bool compare_levels) {
+  constexpr int width = 600, height = 120, period = 24, bar = 11, disparity_px = 30;
+  const GreyLevels texture = random_image(width, height, 311);
+  const auto image = [&](int shift_px, double shade_of_period) {
+    GreyLevels made{width, height, {}};
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const int at = x + shift_px;
+        const bool is_board = at >= 200 && at < 200 + 10 * period && y >= 25 && y < 95;
+        double grey = 60 + 0.4 * texture((at / 3) % width, y / 3);
+        if (is_board) {
+          const int n = (at - 200) / period;
+          grey = (at - 200) % period < bar ? 40 : 190 - shade_of_period * n;
+        }
+        made.values.push_back(static_cast<float>(grey));
+      }
+    }
+    return made;
+  };
+  const RectifiedPair pair{image(0, 0), image(disparity_px, shade)};
+  const std::vector<EdgePoint> edges = canny_edges(pair.left);
+  const std::vector<EdgeMatch> matches =
+      match_edges(pair, edges, {0, 96}, {.compare_levels = compare_levels});
+  int inner = 0, right = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const EdgePoint& edge = edges[i];
+    if (edge.x < 204 || edge.x > 196 + 10 * period || edge.y < 30 || edge.y > 90) continue;
+    ++inner;
+    right += std::abs(matches[i].at.disparity_px - disparity_px) < 0.5;
+  }
+  EXPECT_GT(inner, 500);
+  return static_cast<double>(right) / inner;
+}
+
+TEST(EdgeMatcher, DoesNotMistakeALikeBarForLightThatDiffers) {
+  EXPECT_TRUE(EdgeMatcherOptions{}.compare_levels);
+  for (const double shade : {0.0, 3.0, 6.0}) {
+    EXPECT_GE(share_of_like_bars_found(shade, true), share_of_like_bars_found(shade, false) - 0.02)
+        << shade;
+  }
+}
+
 TEST(EdgeMatcher, FewDisparitiesTellNoTones) {
   const RectifiedPair pair{random_image(120, 40, 308), random_image(120, 40, 309)};
   const std::vector<EdgePoint> edges = canny_edges(pair.left);

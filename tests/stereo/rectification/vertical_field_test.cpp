@@ -260,6 +260,10 @@ TEST(VerticalField, IsThatOfAPatternThatRepeats) {
     EXPECT_TRUE(lower.known && lower.misaligned) << describe(lower);
     EXPECT_NEAR(lower.dy_px(200, 150), 2, 0.2);
   }
+  // A fine mesh tells no rows: all rows a few pixels apart are as good.
+  const ChessPlane mesh{{.normal = {0.02, 0.01, 0.7}, .square_m = 0.014}, 0.0};
+  const VerticalField of_mesh = vertical_field(of_board(mesh, mesh, pair_rig()), {0, 64});
+  EXPECT_FALSE(of_mesh.known && of_mesh.largest_px() > 0.5) << describe(of_mesh);
   // Another board is not taken for the same.
   const ChessPlane one{{.normal = {0.05, -0.1, 0.7}, .square_m = 0.1}, 0.1},
       other{{.normal = {-0.3, 0.2, 0.6}, .square_m = 0.1}, -0.3};

@@ -31,7 +31,7 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
   return row[to.size()];
 }
 
-constexpr std::size_t most_bytes = 100;  ///< of a word that are compared
+constexpr std::size_t compared_bytes = 100;  ///< of a word that are compared
 
 struct Nearest {
   std::string word;
@@ -39,7 +39,7 @@ struct Nearest {
 };
 
 Nearest nearest(std::string_view word, const std::vector<std::string_view>& known) {
-  word = word.substr(0, most_bytes);
+  word = word.substr(0, compared_bytes);
   Nearest best;
   for (const std::string_view candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
@@ -53,7 +53,7 @@ Nearest nearest(std::string_view word, const std::vector<std::string_view>& know
 std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known) {
   constexpr std::size_t few = 20;
   const Nearest best = nearest(word, known);
-  const std::size_t size = std::min(word.size(), most_bytes);
+  const std::size_t size = std::min(word.size(), compared_bytes);
   if (2 * best.distance <= std::max(size, std::size_t{2}) || known.size() > few) {
     return "did you mean '" + shortened(best.word) + "'?";
   }

@@ -63,7 +63,7 @@ std::string source_line(const ComparedSource& s) {
           ? "-"
           : fmt::format("{:.4g} to {:.4g}", s.shown.interval.low, s.shown.interval.high);
   const std::string value = s.shown.known() ? fmt::format("{:.4g}", s.shown.value) : "-";
-  return fmt::format("{:<20}{:>9}{:>20}{:>8}{:>9g}  {}\n", s.key, value, interval, s.shown.samples,
+  return fmt::format("{:<20}{:>9}{:>23}{:>8}{:>9g}  {}\n", s.key, value, interval, s.shown.samples,
                      s.otherwise, s.note);
 }
 
@@ -130,7 +130,7 @@ Json comparison_json(const ComparisonReport& report) {
 }
 
 std::string comparison_text(const ComparisonReport& report) {
-  std::string text = fmt::format("{:<20}{:>9}{:>20}{:>8}{:>9}\n", "source", "shown",
+  std::string text = fmt::format("{:<20}{:>9}{:>23}{:>8}{:>9}\n", "source", "shown",
                                  "95 % over pairs", "n", "default");
   for (const ComparedSource& s : report.sources) text += source_line(s);
   if (!std::isnan(report.unseen_again)) {

@@ -97,9 +97,11 @@ void UnitComputer::try_program(const StudyCell& cell, const std::stop_token& sto
     if (failures++ == 0) why = result.failure;
   }
   if (failures < most_failures) return;
+  const std::string command = cell.system.command();
+  const bool names_it = why.find(command) != std::string::npos;
   throw Error(place_of(study_.file, "system.command"),
-              fmt::format("the program {} failed in the first {} trials: {}",
-                          in_quotes(cell.system.command()), failures, why),
+              fmt::format("the program{} failed in the first {} trials: {}",
+                          names_it ? "" : " " + in_quotes(command), failures, why),
               "run it by hand (docs/systems.md, docs/matchers.md)");
 }
 

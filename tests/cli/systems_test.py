@@ -145,7 +145,7 @@ class Systems(unittest.TestCase):
 
     def test_a_program_that_fails(self):
         program = EXAMPLES['program'].replace('own_system.py', 'missing.py')
-        self.refused(program, 'study.toml:6', 'the program failed in the first 3 trials')
+        self.refused(program, 'study.toml:6', 'the program "python3 missing.py" failed in the first 3 trials')
         (self.folder / 'sometimes.py').write_text(
             'import json, sys\n'
             'json.loads(sys.stdin.readline())\n'

@@ -291,7 +291,9 @@ TEST(Systems, AProgramThatCannotAnswerEndsTheStudyBeforeItBegins) {
   const std::string message = test::error_message([&] {
     run_study(study, {folder / "a", 1, {}, {}, {}});
   });
-  EXPECT_NE(message.find("s.toml:6: the program failed in the first 3 trials"), std::string::npos)
+  EXPECT_NE(message.find("s.toml:6: the program \"python3 -c 'raise SystemExit(7)'\" failed in the "
+                         "first 3 trials"),
+            std::string::npos)
       << message;
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));
 }

@@ -85,7 +85,6 @@ void run(const StudyArguments& options, Session& session) {
   if (system_of(study.file).uses_opencv) cv::setNumThreads(1);  // as evaluate
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
-  job.on_start = [&] { claim.extend(); };
   run_in_folder(claim, study, std::move(job), "study", session);
   processes.end();
   print(study, options.folder, session);

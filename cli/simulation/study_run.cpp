@@ -54,6 +54,11 @@ void run_in_folder(const FolderClaim& claim,
                          session.command));
   };
   job.on_stop = end;
+  bool is_extended = false;
+  job.on_start = [&] {
+    claim.extend();
+    is_extended = true;
+  };
   try {
     run_study(study, job);
   } catch (...) {
@@ -61,7 +66,7 @@ void run_in_folder(const FolderClaim& claim,
     throw;
   }
   if (stop.came()) end();
-  claim.extend();  // where no trial was missing
+  if (!is_extended) claim.extend();  // no trial was missing
 }
 
 namespace {

@@ -119,7 +119,6 @@ StudyResults race(const Tuning& tuning,
   const fs::path folder = fs::path(options.folder) / search_folder;
   const FolderClaim claim(tuning.study, inputs_of_study(tuning.text, tuning.file), folder);
   StudyRun job = job_in(folder, options, session);
-  job.on_start = [&] { claim.extend(); };
   job.first_blocks = [&](const StudyWork& work, const StoredResults& stored) {
     return search.first_blocks(work, stored);
   };
@@ -146,7 +145,6 @@ StudyResults confirm(const Tuning& tuning,
   const Study study = load_study(text, tuning.file, silent);
   const FolderClaim claim(study, inputs_of_study(text, tuning.file), folder);
   StudyRun job = job_in(folder, options, session);
-  job.on_start = [&] { claim.extend(); };
   job.first_blocks = [](const StudyWork& work, const StoredResults&) {  // all, without ceilings
     return std::vector<int>(work.cell_keys.size(), static_cast<int>(work.blocks.size()));
   };

@@ -146,8 +146,7 @@ StudyResults visit_blocks(const Study& study,
   StudyResults results = without_trials(study, work, stored);
   results.changed_programs = changed;
   const std::size_t cells = results.cells.size();
-  std::vector<std::vector<BlockJob>> jobs(cells);
-  for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
+  const std::vector<std::vector<BlockJob>> jobs = jobs_by_cell(work);
   std::vector<int> done_of(cells, 0);  // blocks of cells that share them, the most
   constexpr int at_a_time = 200;       // blocks read together
   for (std::size_t cell = 0; cell < cells; ++cell) {

@@ -116,6 +116,12 @@ std::vector<StoredBlock> blocks_of(const StudyCell& cell,
   return blocks;
 }
 
+std::vector<std::vector<BlockJob>> jobs_by_cell(const StudyWork& work) {
+  std::vector<std::vector<BlockJob>> jobs(work.cell_keys.size());
+  for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
+  return jobs;
+}
+
 std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_cells) {
   std::vector<int> wanted(of_cells.size(), 0);
   for (std::size_t i = 0; i < of_cells.size(); ++i) {
@@ -128,11 +134,9 @@ std::vector<int> most_wanted(const StudyWork& work, const std::vector<int>& of_c
 std::vector<BudgetDecision> budget_decisions(const Study& study,
                                              const StudyWork& work,
                                              const StoredResults& stored) {
-  const std::size_t cells = work.cell_keys.size();
-  std::vector<std::vector<BlockJob>> jobs(cells);
-  for (const BlockJob& job : work.blocks) jobs[static_cast<std::size_t>(job.cell)].push_back(job);
+  const std::vector<std::vector<BlockJob>> jobs = jobs_by_cell(work);
   std::vector<BudgetDecision> decisions;
-  for (std::size_t i = 0; i < cells; ++i) {
+  for (std::size_t i = 0; i < work.cell_keys.size(); ++i) {
     const StudyCell& cell = study.file.cells[i];
     const std::string& key = work.cell_keys[i];
     const std::vector<BlockJob>& all = jobs[static_cast<std::size_t>(work.same_as[i])];

@@ -59,6 +59,9 @@ std::vector<BudgetDecision> budget_decisions(const Study& study,
                                              const StudyWork& work,
                                              const StoredResults& stored);
 
+/// The blocks of each cell, ascending; none of one that shares another's.
+std::vector<std::vector<BlockJob>> jobs_by_cell(const StudyWork& work);
+
 /// How many blocks each cell wants.
 std::vector<int> blocks_wanted(const std::vector<BudgetDecision>& decisions);
 

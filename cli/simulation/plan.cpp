@@ -38,11 +38,8 @@
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_doubts.h"
 #include "cli/simulation/plan_result.h"
-#include "sim/experiment.h"
-#include "sim/study/success_curve.h"
-#include "sim/visibility.h"
-#include "sim/world.h"
-#include "sim/world_file.h"
+#include "cli/simulation/plan_success.h"
+#include "sim/study/study.h"
 
 namespace vernier::cli {
 namespace {
@@ -50,11 +47,10 @@ namespace {
 constexpr int most_plan_corners = 10'000;  ///< of a board
 
 struct PlanArguments {
-  std::string rig, cameras, depth, projection, board, world = "workshop", protocol = "path",
-                                                      method = "lines";
+  std::string rig, cameras, depth, projection, board;
   double success = 0, at_m = 5, square_m = 0.025, pixel_sigma_px = 0.2, pair_sigma_px = 0;
   double board_distance_m = 1, board_tilt_deg = 34;
-  int trials = 300, threads = 0;
+  SuccessTrials trials;  ///< of --success
   std::uint64_t seed = 1;
   const CLI::App* app = nullptr;
 };
@@ -77,8 +73,9 @@ double number_at(const std::string& text, const std::string& option, double& at_
 /// Throws Error for options that would have no effect.
 void refuse_unused_options(const CLI::App& app, const PlanTarget& target, bool from_calibration) {
   if (target.quantity != "success") {
-    refuse_options(app, std::array{"--world", "--protocol", "--method", "--trials"},
-                   "only valid with --success", "leave it out");
+    refuse_options(
+        app, std::array{"--study", "--world", "--protocol", "--method", "--within-m", "--trials"},
+        "only valid with --success", "leave it out");
   }
   if (target.quantity != "depth") {
     refuse_options(app, std::array{"--pair-sigma-px"}, "only valid with --depth-error",
@@ -185,106 +182,25 @@ void allow_for_pixel_noise(const PlanArguments& o, PlanResult& plan) {
       plan.pair_sigma_px, noise, noise / target.value);
 }
 
-/// The covariance after the views so far, or after ten of a datasheet's.
-Covariance reference_covariance(const ViewKnowledge& known) {
-  const ViewPool& pool = known.pools[0];
-  const std::vector<Eigen::MatrixXd>& views =
-      pool.taken.empty() ? pool.following[0].views : pool.taken;
-  constexpr std::size_t enough = 10;
-  const std::size_t count = pool.taken.empty() ? std::min(enough, views.size()) : views.size();
-  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(pool.free.cols(), pool.free.cols());
-  for (std::size_t i = 0; i < count; ++i) S += views[i];
-  if (pool.prior.size() > 0) S += known.noise_px * known.noise_px * pool.prior;
-  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
-  if (!factor.is_positive_definite()) {
-    throw Error("plan", "the views so far do not determine the rig", "take more views");
-  }
-  const Eigen::MatrixXd C = known.noise_px * known.noise_px *
-                            (scale.asDiagonal() * factor.inverse() * scale.asDiagonal());
-  const Eigen::MatrixXd full = pool.free * C * pool.free.transpose();
-  return {CovarianceKind::mvb, parameter_names(pool.rig), 0.5 * (full + full.transpose())};
-}
-
-/// The cause without which success rises by more than its interval's half width, if there is one.
-std::string causes_in_words(const PlanResult& plan) {
-  const SuccessAt& now = plan.successes[0];
-  const double noise = 0.5 * (now.interval_95.high - now.interval_95.low);
-  if (!plan.causes.empty() && plan.causes[0].success > now.success + noise) {
-    return fmt::format("first {} (without it {:.1f} %)", plan.causes[0].name,
-                       100 * plan.causes[0].success);
-  }
-  return "no single source of error, but the localiser, its map or places that look alike (vernier "
-         "study gives the world's ceiling)";
-}
-
-/// Success against the calibration's error, and from it the depth error that is allowed.
-void allow_for_success(const PlanArguments& o, PlanResult& plan, Session& session) {
-  const std::filesystem::path file = find_world(o.world);
-  const World world = build_world(read_world(file));
-  const Visibility visibility(world);
-  ExperimentSettings settings;
-  settings.protocol = query_protocol(o.protocol);
-  settings.method = o.method;
-  settings.seed = o.seed;
-  const Rig& rig = plan.known.pools[0].rig;
-  const Covariance covariance = reference_covariance(plan.known);
-  std::optional<Progress> progress;
-  SuccessCurveOptions how{
-      .trials = o.trials, .threads = o.threads, .progress = [&](int done, int total) {
-        if (!progress) progress.emplace(session, "plan: trials");
-        progress->update(done, total);
-      }};
-  const TargetQuantity depth = target_quantity(rig, "depth", plan.target.at_m);
-  const double reference_sd = sd_of(depth, ScaledDecomposition(covariance).factor());
-  with_errors_of(o.world, [&] {
-    plan.successes = success_curve(visibility, rig, covariance, settings, how);
-    plan.scale = scale_needed(plan.successes, plan.target.value);
-    if (plan.successes[0].interval_95.high < plan.target.value) {
-      plan.causes = limiting_causes(visibility, rig, covariance, settings, how);
-    }
-    return 0;
-  });
-  if (!plan.causes.empty()) {
-    plan.limit = fmt::format(
-        "without any calibration error success is {:.1f} % [{:.1f}, {:.1f}]; what limits is {}",
-        100 * plan.successes[0].success, 100 * plan.successes[0].interval_95.low,
-        100 * plan.successes[0].interval_95.high, causes_in_words(plan));
-    return;
-  }
-  if (plan.scale->psi_c > 0) plan.sd_allowed = plan.scale->psi_c * reference_sd;
-}
-
-/// For a success rate the uncertainty of the scale comes on top of that of the views.
-void widen_by_scale(const PlanResult& plan,
-                    const ViewKnowledge& known,
-                    const ViewPlanOptions& how,
-                    ViewsNeeded& needed) {
-  const double per_scale = *plan.sd_allowed / plan.scale->psi_c;
-  const double loose = std::max(plan.scale->high, plan.scale->psi_c) * per_scale;
-  needed.interval.low = views_needed(known, "depth", plan.target.at_m, loose, how).interval.low;
-  if (plan.scale->low > 0) {
-    const ViewsNeeded most =
-        views_needed(known, "depth", plan.target.at_m, plan.scale->low * per_scale, how);
-    needed.interval.high = most.interval.high;
-    needed.is_reached = most.is_reached;
-  } else {
-    needed.interval.high = std::numeric_limits<double>::infinity();
-  }
-}
-
 void run(const PlanArguments& o, Session& session) {
   PlanResult plan;
   plan.target = target_of(o);
-  const std::string name = o.rig.empty() ? "nominal" : o.rig;
-  const RigFile file = read_rig(find_rig(name));
-  for (const std::string& warning : file.warnings) session.warn(warning);
+  std::optional<Study> study;
+  if (plan.target.quantity == "success") study = study_of(o.trials, o.seed, *o.app, session);
+  const bool has_rig_of_study = o.rig.empty() && !o.trials.study.empty();
+  const std::string name = has_rig_of_study ? study->file.rig : o.rig.empty() ? "nominal" : o.rig;
+  const RigFile file = read_rig(
+      has_rig_of_study ? find_rig(name, std::filesystem::path(o.trials.study).parent_path())
+                       : find_rig(name));
+  if (!has_rig_of_study) {  // else they are said
+    for (const std::string& warning : file.warnings) session.warn(warning);
+  }
   const std::vector<int> cameras = chosen_cameras(file.estimate.rig, o.cameras);
   if (plan.target.quantity != "projection") require_chosen_pair(file.estimate.rig, o.cameras, name);
   know(o, file.estimate, cameras, name, plan);
   refuse_unused_options(*o.app, plan.target, plan.from_calibration);
-  if (plan.target.quantity == "success") {
-    allow_for_success(o, plan, session);
+  if (study) {
+    allow_for_success(std::move(*study), o.trials.threads, plan, session);
   } else {
     allow_for_pixel_noise(o, plan);
   }
@@ -333,7 +249,8 @@ void add_plan(CLI::App& app, Session& session) {
       "how many board views a wanted accuracy takes, from a calibration so far or a datasheet",
       "vernier plan rig.json --depth-error 0.02@5m\n"
       "  vernier plan datasheet.json --board 9x6 --square-m 0.025 --projection-error 0.5@2m\n"
-      "  vernier plan rig.json --success 0.95 --world workshop --trials 300");
+      "  vernier plan rig.json --success 0.95 --world workshop --within-m 0.1\n"
+      "  vernier plan rig.json --success 0.95 --study study.toml");
   o->app = verb;
   verb->add_option("rig,--rig", o->rig,
                    "calibration with its board views, or a datasheet (default: nominal)");
@@ -344,7 +261,8 @@ void add_plan(CLI::App& app, Session& session) {
                    "wanted standard deviation of the depth, metres, as 0.02 or 0.02@5m");
   verb->add_option("--projection-error,--target-projection-sigma-px", o->projection,
                    "wanted standard deviation of the projection, pixels, as 0.5 or 0.5@2m");
-  verb->add_option("--success,--target-success", o->success, "wanted success rate of localisation")
+  verb->add_option("--success,--target-success", o->success,
+                   "wanted success rate of localisation, or of what --study tries")
       ->check(CLI::Range(1e-3, 0.9999));
   verb->add_option("--at-m", o->at_m, "distance, metres")
       ->check(finite_and_positive)
@@ -369,17 +287,7 @@ void add_plan(CLI::App& app, Session& session) {
   verb->add_option("--pixel-sigma", o->pixel_sigma_px, "noise of its corners, pixels")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--world", o->world, "world of --success, a shipped name or a file")
-      ->capture_default_str();
-  verb->add_option("--protocol", o->protocol, "near_path, path, anywhere or free")
-      ->capture_default_str();
-  verb->add_option("--method", o->method, "localiser of --success")->capture_default_str();
-  verb->add_option("--trials", o->trials, "trials at each of six scales of the calibration's error")
-      ->check(CLI::Range(12, 100'000))
-      ->capture_default_str();
-  verb->add_option("--threads", o->threads, "number of threads (0: all)")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
+  add_success_options(*verb, o->trials);
   verb->add_option("--seed", o->seed, "seed of all draws")->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

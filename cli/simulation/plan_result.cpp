@@ -21,7 +21,9 @@ Json ends_json(const Interval& interval) {
 std::string in_percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
 std::string target_text(const PlanTarget& target) {
-  if (target.quantity == "success") return fmt::format("success {}", in_percent(target.value));
+  if (target.quantity == "success") {
+    return fmt::format("success {}: {}", in_percent(target.value), target.condition);
+  }
   return fmt::format("{} at {:g} m: standard deviation {:g} {}", target.quantity, target.at_m,
                      target.value, target.unit);
 }
@@ -96,7 +98,8 @@ Json plan_json(const PlanResult& plan) {
              {{"quantity", plan.target.quantity},
               {"value", plan.target.value},
               {"unit", plan.target.unit},
-              {"at_m", plan.target.at_m}}},
+              {"at_m", plan.target.at_m},
+              {"success_error", json_number(plan.target.success_error)}}},
             {"basis", plan.basis},
             {"from", plan.from_calibration ? "calibration" : "datasheet"},
             {"views_so_far", plan.known.taken},
@@ -127,7 +130,8 @@ Json plan_json(const PlanResult& plan) {
   for (const SuccessAt& at : plan.successes) {
     json["success"].push_back({{"calibration", at.psi_c},
                                {"success", at.success},
-                               {"success_interval_95", ends_json(at.interval_95)}});
+                               {"success_interval_95", ends_json(at.interval_95)},
+                               {"failed", at.failed}});
   }
   for (const LimitingCause& cause : plan.causes) {
     json["limiting_causes"].push_back({{"without", cause.name}, {"success", cause.success}});

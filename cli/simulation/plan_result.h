@@ -17,7 +17,9 @@ namespace vernier::cli {
 struct PlanTarget {
   std::string quantity;  ///< depth, projection or success
   double value = 0, at_m = 5;
-  std::string unit;  ///< m, px or none
+  std::string unit;       ///< m, px or none
+  std::string condition;  ///< of a success: "within 0.1 m", "depth error at most 0.05 m"
+  double success_error = std::numeric_limits<double>::quiet_NaN();  ///< the same as a number
 };
 
 /// What `plan` found.

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <opencv2/core/utility.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -82,7 +81,6 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
-  if (system_of(study.file).uses_opencv) cv::setNumThreads(1);  // as evaluate
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   run_in_folder(claim, study, std::move(job), "study", session);

@@ -193,7 +193,6 @@ void add_system(const CellResult& cell, Json& json) {
   const CellSummary& s = cell.summary;
   const SystemSettings& system = cell.cell.system;
   json["blocks"] = s.maps;
-  json["success_error"] = system.success_error;
   json["median_error"] = json_number(s.median_error);
   json["p95_error"] = json_number(s.p95_error);
   json["why_failed"] = s.why_failed.empty() ? Json() : Json(s.why_failed);
@@ -226,6 +225,7 @@ Json cell_json(const CellResult& cell) {
             {"settings", settings},
             {"swept", swept},
             {"trials", s.trials},
+            {"success_error", cell.cell.system.success_error},
             {"success", of_trials(s.success)},
             {"success_interval_95", clustered},
             {"success_interval_95_missing", missing},

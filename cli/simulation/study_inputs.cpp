@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <opencv2/core/utility.hpp>
 #include <set>
 #include <system_error>
 #include <tuple>
@@ -195,8 +196,16 @@ Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
     load(input, file_of_input(input), study, session);
   }
   if (study.file.cells[0].system.is_localiser()) check_maps(study);
-  check_covariances(study);
+  if (system_of(study.file).uses_opencv) cv::setNumThreads(1);  // as evaluate
   return study;
+}
+
+/// The study of a text, its inputs beside it.
+Study assemble_beside(const std::string& text, const fs::path& place, Session& session) {
+  const StudyFile study = parse_study(text, place.string());
+  return assemble(study, session, [&](const StudyInput& input) {
+    return file_of(input, study, place.parent_path());
+  });
 }
 
 }  // namespace
@@ -241,10 +250,13 @@ Study load_study(const fs::path& file, Session& session) {
 }
 
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
-  const StudyFile study = parse_study(text, place.string());
-  return assemble(study, session, [&](const StudyInput& input) {
-    return file_of(input, study, place.parent_path());
-  });
+  Study study = assemble_beside(text, place, session);
+  check_covariances(study);
+  return study;
+}
+
+Study load_study_of_another_rig(const fs::path& file, Session& session) {
+  return assemble_beside(read_whole(file), file, session);
 }
 
 Study open_folder(const fs::path& folder, Session& session) {
@@ -252,8 +264,10 @@ Study open_folder(const fs::path& folder, Session& session) {
     throw Error(folder.string(), "is not a study folder",
                 "give a folder written by vernier study -o");
   }
-  return assemble(read_study(folder / study_copy, folder / sources_name), session,
-                  [&](const StudyInput& input) { return folder / input.copy; });
+  Study study = assemble(read_study(folder / study_copy, folder / sources_name), session,
+                         [&](const StudyInput& input) { return folder / input.copy; });
+  check_covariances(study);
+  return study;
 }
 
 }  // namespace vernier::cli

@@ -274,9 +274,9 @@ std::string conditions(const Study& study, const StudyResults& results) {
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
   return rig_text(study) + calibrations_text(results) +
-         fmt::format("{}world {}; success: answered, within 1 m\n",
+         fmt::format("{}world {}; success: answered, within {}\n",
                      swept_protocol ? "" : fmt::format("protocol {}, ", protocol),
-                     world_names(study)) +
+                     world_names(study), limit_text(study.file)) +
          (study.file.interval_width
               ? fmt::format("interval: confidence sequence over recorded maps, to {} wide\n",
                             *study.file.interval_width)

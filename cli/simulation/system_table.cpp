@@ -48,20 +48,23 @@ bool uses_told_rigs(const SystemKind& kind) {
   return kind.tells_rigs || kind.sources == SourcesUsed::all;
 }
 
-std::string system_conditions(const Study& study, const std::string& worlds) {
-  const SystemKind& kind = system_of(study.file);
-  const std::vector<StudyCell>& cells = study.file.cells;
+std::string limit_text(const StudyFile& study) {
+  const std::vector<StudyCell>& cells = study.cells;
   const double limit = cells[0].system.success_error;
-  const bool one_limit = std::all_of(cells.begin(), cells.end(), [&](const StudyCell& cell) {
+  const bool is_one = std::all_of(cells.begin(), cells.end(), [&](const StudyCell& cell) {
     return cell.system.success_error == limit;
   });
-  const std::string most =
-      one_limit ? fmt::format("{:g}{}{}", limit, kind.unit.empty() ? "" : " ", kind.unit)
+  const std::string& unit = system_of(study).unit;
+  return is_one ? fmt::format("{:g}{}{}", limit, unit.empty() ? "" : " ", unit)
                 : "system.success_error";
+}
+
+std::string system_conditions(const Study& study, const std::string& worlds) {
+  const SystemKind& kind = system_of(study.file);
   const std::string blocks = "blocks of " + counted(study.file.trials_per_block, "trial");
   return (kind.uses("world") ? fmt::format("world {}\n", worlds) : "") +
          fmt::format("system {}; success: answered, {} at most {}\n", kind.name, kind.error_title,
-                     most) +
+                     limit_text(study.file)) +
          (study.file.interval_width
               ? fmt::format("interval: confidence sequence over {}, to {} wide\n", blocks,
                             *study.file.interval_width)

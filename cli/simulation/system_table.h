@@ -8,6 +8,7 @@
 #include "cli/program/namespaces.h"
 #include "cli/program/text_table.h"
 #include "sim/study/study.h"
+#include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 
 namespace vernier::cli {
@@ -21,6 +22,9 @@ std::string measured_table(const StudyResults& results, std::vector<TextColumn> 
 
 /// Whether the estimator may be told another rig than the true one.
 bool uses_told_rigs(const SystemKind& kind);
+
+/// The largest error of a success, with its unit; of cells that differ, the key that says it.
+std::string limit_text(const StudyFile& study);
 
 /// What counts as a success of another system than a localiser, and how the interval is made.
 std::string system_conditions(const Study& study, const std::string& worlds);

@@ -34,7 +34,7 @@ void StatedErrors::add(const TrialResult& trial) {
     ++answered_;
     stated_of_answers_ += stated;
   }
-  const bool wrong = trial.error > trial.limit;
+  const bool wrong = trial.error > success_radius_m;  // of which the probability is stated
   const auto above = std::upper_bound(borders.begin(), borders.end() - 1, stated);
   Count& range = by_range_[static_cast<std::size_t>(above - borders.begin()) - 1];
   ++range.answers;

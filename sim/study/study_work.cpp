@@ -25,6 +25,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
+#include "sim/study/system_kind.h"
 
 namespace vernier::sim::internal {
 
@@ -104,6 +105,12 @@ std::vector<ClusterCount> first_row_counts(const std::string& key,
   return first;
 }
 
+/// Rows of localisers count what is within success_radius_m, those of other systems by the limit of
+/// the study that made them.
+bool has_limit_of_rows(const SystemSettings& system) {
+  return system.is_localiser() && system.success_error == success_radius_m;
+}
+
 }  // namespace
 
 std::vector<StoredBlock> blocks_of(const StudyCell& cell,
@@ -140,7 +147,7 @@ std::vector<BudgetDecision> budget_decisions(const Study& study,
     const StudyCell& cell = study.file.cells[i];
     const std::string& key = work.cell_keys[i];
     const std::vector<BlockJob>& all = jobs[static_cast<std::size_t>(work.same_as[i])];
-    const bool by_limit = study.file.interval_width && !cell.system.is_localiser();
+    const bool by_limit = study.file.interval_width && !has_limit_of_rows(cell.system);
     const std::vector<ClusterCount> first =
         by_limit ? first_counts(cell, key, all, stored) : first_row_counts(key, all, stored);
     decisions.push_back(

@@ -2,27 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/success_curve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <mutex>
-#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "calib/base/ordered_parallel.h"
-#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/interval.h"
-#include "calib/rig.h"
-#include "calib/rig_estimate.h"
 #include "localise/localiser.h"
+#include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_work.h"
 #include "sim/study/success_interval.h"
-#include "sim/told_rigs.h"
-#include "sim/visibility.h"
+#include "sim/study/system_kind.h"
+#include "sim/study/work_units.h"
 
 namespace vernier::sim::internal {
 
@@ -65,52 +67,81 @@ std::vector<double> isotonic(const std::vector<SuccessAt>& curve) {
   return values;
 }
 
-}  // namespace
+/// A cell with another size of a source.
+StudyCell with_source(const StudyCell& cell,
+                      std::string_view name,
+                      double SourceSettings::*value,
+                      double size) {
+  StudyCell other = cell;
+  other.experiment.sources.*value = size;
+  other.settings[fmt::format("sources.{}", name)] = fmt::format("{}", size);
+  return other;
+}
 
-std::vector<SuccessAt> success_curve(const Visibility& visibility,
-                                     const Rig& truth,
-                                     const Covariance& covariance,
-                                     const ExperimentSettings& settings,
-                                     const SuccessCurveOptions& options) {
-  const int size = block_size(options.trials);
-  const int blocks = (options.trials + size - 1) / size;
-  RigEstimate rig;
-  rig.rig = truth;
-  const auto views = std::make_shared<const MapViews>(map_views(visibility, truth, settings));
-  std::vector<std::unique_ptr<const LocalisationExperiment>> experiments;
-  for (const double psi_c : options.psi_c) {
-    ExperimentSettings scaled = settings;
-    scaled.sources.calibration = psi_c;
-    experiments.push_back(std::make_unique<const LocalisationExperiment>(
-        visibility, rig, views, scaled, nullptr, nullptr,
-        drawn_rigs(truth, covariance, psi_c, settings.seed, "plan")));
+/// What became of the trials of a block.
+struct BlockCount {
+  ClusterCount count;
+  int failed = 0;
+  std::string why_failed;
+};
+
+BlockCount counted(const std::vector<TrialResult>& trials, double success_error) {
+  BlockCount block;
+  for (TrialResult trial : trials) {
+    trial.limit = success_error;
+    ++block.count.trials;
+    block.count.successes += trial.success();
+    if (trial.status != localise::LocalisationStatus::failed) continue;
+    if (block.failed++ == 0) block.why_failed = trial.failure;
   }
-  const int total = blocks * static_cast<int>(experiments.size());
-  std::vector<ClusterCount> counts(static_cast<std::size_t>(total));
+  return block;
+}
+
+/// How often the trials of each cell succeed. Cells differ in sources only.
+std::vector<SuccessAt> success_of_cells(const Study& study, const SuccessCurveOptions& options) {
+  const StudyWork work = study_work(study);
+  UnitComputer computer(study, work);
+  computer.prepare_maps();
+  const double success_error = study.file.cells[0].system.success_error;
+  std::vector<BlockCount> of_block(work.blocks.size());
   std::mutex mutex;
   int done = 0;
-  for_each_index(counts.size(), options.threads, [&](std::size_t i) {
-    const int block = static_cast<int>(i) % blocks, first = block * size;
-    const auto trials = experiments[i / static_cast<std::size_t>(blocks)]->run_block(
-        {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(first),
-         static_cast<std::uint32_t>(std::min(size, options.trials - first))});
-    const auto right = std::count_if(trials.begin(), trials.end(),
-                                     [](const TrialResult& t) { return t.success(); });
-    counts[i] = {static_cast<int>(right), static_cast<int>(trials.size())};
+  for_each_index(work.blocks.size(), options.threads, [&](std::size_t i) {
+    of_block[i] = counted(computer.trials(work.blocks[i]), success_error);
     const std::lock_guard lock(mutex);
-    if (options.progress) options.progress(++done, total);
+    if (options.progress) options.progress(++done, static_cast<int>(of_block.size()));
   });
-  std::vector<SuccessAt> curve;
-  for (std::size_t k = 0; k < options.psi_c.size(); ++k) {
-    const std::span maps(counts.data() + k * static_cast<std::size_t>(blocks),
-                         static_cast<std::size_t>(blocks));
-    int right = 0;
-    for (const ClusterCount& map : maps) right += map.successes;
-    SuccessAt at{options.psi_c[k], static_cast<double>(right) / options.trials, {0, 1}};
-    if (const auto interval = clustered_interval_95(maps)) at.interval_95 = *interval;
-    curve.push_back(at);
+  std::vector<SuccessAt> successes;
+  for (std::size_t k = 0; k < study.file.cells.size(); ++k) {
+    SuccessAt at{.psi_c = study.file.cells[k].experiment.sources.calibration};
+    std::vector<ClusterCount> counts;
+    int right = 0, trials = 0;
+    for (std::size_t i = 0; i < of_block.size(); ++i) {
+      if (work.blocks[i].cell != work.same_as[k]) continue;
+      const BlockCount& block = of_block[i];
+      counts.push_back(block.count);
+      right += block.count.successes;
+      trials += block.count.trials;
+      if (at.failed == 0) at.why_failed = block.why_failed;
+      at.failed += block.failed;
+    }
+    at.success = static_cast<double>(right) / trials;
+    if (const auto interval = clustered_interval_95(counts)) at.interval_95 = *interval;
+    successes.push_back(std::move(at));
   }
-  return curve;
+  return successes;
+}
+
+}  // namespace
+
+std::vector<SuccessAt> success_curve(Study study, const SuccessCurveOptions& options) {
+  std::vector<StudyCell> cells;
+  for (const double psi_c : options.psi_c) {
+    cells.push_back(
+        with_source(study.file.cells[0], "calibration", &SourceSettings::calibration, psi_c));
+  }
+  study.file.cells = std::move(cells);
+  return success_of_cells(study, options);
 }
 
 ScaleNeeded scale_needed(const std::vector<SuccessAt>& curve, double success) {
@@ -133,25 +164,28 @@ ScaleNeeded scale_needed(const std::vector<SuccessAt>& curve, double success) {
   return needed;
 }
 
-std::vector<LimitingCause> limiting_causes(const Visibility& visibility,
-                                           const Rig& truth,
-                                           const Covariance& covariance,
-                                           const ExperimentSettings& settings,
-                                           SuccessCurveOptions options) {
-  options.psi_c = {0};
+std::vector<LimitingCause> limiting_causes(Study study, const SuccessCurveOptions& options) {
+  if (system_of(study.file).sources != SourcesUsed::all) return {};
+  const StudyCell now =
+      with_source(study.file.cells[0], "calibration", &SourceSettings::calibration, 0);
+  const ExperimentSettings& settings = now.experiment;
+  const bool has_corners =
+      now.system.is_localiser() && localise::needs_corners(settings.method, settings.localiser);
   std::vector<LimitingCause> causes;
+  std::vector<StudyCell> cells;
   for (const SourceParameter& parameter : source_parameters()) {
     const bool of_corners = parameter.name.starts_with("corner");
     if (parameter.name == "calibration" || !parameter.is_switch ||
-        !(settings.sources.*parameter.value > 0) ||
-        (of_corners && !localise::needs_corners(settings.method, settings.localiser))) {
+        !(settings.sources.*parameter.value > 0) || (of_corners && !has_corners)) {
       continue;
     }
-    ExperimentSettings without = settings;
-    without.sources.*parameter.value = 0;
-    causes.push_back({std::string(parameter.name),
-                      success_curve(visibility, truth, covariance, without, options)[0].success});
+    causes.push_back({std::string(parameter.name)});
+    cells.push_back(with_source(now, parameter.name, parameter.value, 0));
   }
+  if (causes.empty()) return {};
+  study.file.cells = std::move(cells);
+  const std::vector<SuccessAt> without = success_of_cells(study, options);
+  for (std::size_t i = 0; i < causes.size(); ++i) causes[i].success = without[i].success;
   std::stable_sort(causes.begin(), causes.end(),
                    [](const auto& a, const auto& b) { return a.success > b.success; });
   return causes;

@@ -6,37 +6,32 @@
 #include <string>
 #include <vector>
 
-#include "calib/covariance.h"
 #include "calib/interval.h"
-#include "calib/rig.h"
-#include "sim/experiment.h"
-#include "sim/visibility.h"
+#include "sim/study/study.h"
 
 namespace vernier::sim::internal {
 
-/// How often localisation succeeds at one scale of the calibration error.
+/// How often trials succeed at one scale of the calibration error.
 struct SuccessAt {
   double psi_c = 0;
   double success = 0;
-  Interval interval_95{0, 1};  ///< clustered by recorded map (success_interval.h)
+  Interval interval_95{0, 1};  ///< clustered by recorded map, or block (success_interval.h)
+  int failed = 0;              ///< trials that a program or a source of error spoilt
+  std::string why_failed = {};
 };
 
 struct SuccessCurveOptions {
   std::vector<double> psi_c{0, 0.25, 0.5, 1, 2, 4};  ///< ascending
-  int trials = 300;                                  ///< at each scale, in six maps or more
   int threads = 0;                                   ///< 0: all cores
   std::function<void(int done, int total)> progress = {};
 };
 
-/// Success against psi_c, which scales the error of a true rig by its covariance. Trials are the
-/// same at all scales (queries, image errors, the direction of the error in the rig), so
-/// differences are paired. The result does not depend on the number of threads. Throws Error as
-/// LocalisationExperiment.
-std::vector<SuccessAt> success_curve(const Visibility& visibility,
-                                     const Rig& truth,
-                                     const Covariance& covariance,
-                                     const ExperimentSettings& settings,
-                                     const SuccessCurveOptions& options = {});
+/// Success against psi_c, which scales the error of the true rig by its covariance: the trials of a
+/// study's first cell, at each scale in place of its sources.calibration. They are the same at all
+/// scales (queries, image errors, the direction of the error in the rig), so differences are
+/// paired, and all of them are run. Nothing is stored. The result does not depend on the number of
+/// threads. Throws Error as run_study.
+std::vector<SuccessAt> success_curve(Study study, const SuccessCurveOptions& options = {});
 
 /// The scale at which a success rate is met, of a rate that falls with the scale.
 struct ScaleNeeded {
@@ -56,11 +51,8 @@ struct LimitingCause {
   double success = 0;
 };
 
-/// Each source of error off in turn, calibration too; the most limiting cause first.
-std::vector<LimitingCause> limiting_causes(const Visibility& visibility,
-                                           const Rig& truth,
-                                           const Covariance& covariance,
-                                           const ExperimentSettings& settings,
-                                           SuccessCurveOptions options);
+/// Each source of error that acts on the study's system off in turn, calibration too; the most
+/// limiting cause first. Of the options psi_c does not count.
+std::vector<LimitingCause> limiting_causes(Study study, const SuccessCurveOptions& options = {});
 
 }  // namespace vernier::sim::internal

@@ -14,6 +14,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
+#include "sim/experiment.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 
@@ -109,8 +110,7 @@ void SystemReader::read_names(const toml::node& node, SystemSettings& settings) 
 void SystemReader::read_options(const toml::table& section,
                                 const SystemKind& kind,
                                 SystemSettings& settings) const {
-  Keys keys{"name"};
-  if (!settings.is_localiser()) keys.push_back("success_error");
+  Keys keys{"name", "success_error"};
   for (const SystemOption& option : kind.options) keys.push_back(option.name);
   check_keys(section, keys, "[system]");
   if (const auto* node = section.get("success_error")) {
@@ -122,6 +122,10 @@ void SystemReader::read_options(const toml::table& section,
     if (!(settings.success_error < kind.largest_error)) {
       fail(*node, "system.success_error is not below " + fmt::format("{:g}", kind.largest_error),
            "the error is a " + kind.error_title);
+    }
+    if (settings.is_localiser() && settings.success_error > success_radius_m) {
+      fail(*node, fmt::format("system.success_error is above {:g} m", success_radius_m),
+           "give less: an answer further away is another place");
     }
   } else if (std::isnan(settings.success_error)) {
     required(section, "success_error", "[system]");
@@ -248,9 +252,9 @@ void check_options_are_used(const StudyFile& study) {
 
 std::map<std::string, std::string> settings_of(const SystemSettings& system) {
   std::map<std::string, std::string> all;
+  all["system.success_error"] = fmt::format("{}", system.success_error);
   if (system.is_localiser()) return all;
   all["system.name"] = system.name;
-  all["system.success_error"] = fmt::format("{}", system.success_error);
   for (const auto& [name, value] : system.options) all["system." + name] = value;
   for (const auto& [name, value] : system.parameters) {
     all["parameters." + name] = shown_parameter(value);

@@ -44,7 +44,7 @@ class SystemReader : public SettingsReader {
 /// program.
 void check_options_are_used(const StudyFile& study);
 
-/// The system's settings by dotted key; none of a localiser's.
+/// The system's settings by dotted key.
 std::map<std::string, std::string> settings_of(const SystemSettings& system);
 
 /// Whether trials are the same whatever the setting is, by its dotted key: what counts as a

@@ -133,6 +133,62 @@ class Plan(Base):
         self.assertIsNone(impossible['views'])
         self.assertIn('without any calibration error success is', impossible['limit'])
 
+    def test_success_within_a_distance(self):
+        self.call('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', 'w.world.toml')
+        words = ['plan', DATASHEET, '--board', '9x6', '--success', '0.2', '--trials', '18']
+        near = self.json(*words, '--world', 'w.world.toml', '--within-m', '0.03')
+        far = self.json(*words, '--world', 'w.world.toml')
+        self.assertEqual((near['target']['success_error'], far['target']['success_error']), (0.03, 1))
+        rates = [[row['success'] for row in plan['success']] for plan in (near, far)]
+        self.assertTrue(all(a <= b for a, b in zip(*rates)), rates)
+        self.assertLess(rates[0][-1], rates[0][0])  # the calibration's error now matters
+        # A study says the same, and more: of its own seed, sources and localiser.
+        (self.folder / 's.toml').write_text(
+            '[study]\ntrials = 18\nprotocol = "path"\n[world]\nfile = "w.world.toml"\n'
+            '[system]\nname = "localiser"\nsuccess_error = 0.03\n')
+        same = self.json(*words[:-2], '--study', 's.toml')
+        self.assertEqual(near, same)
+
+    def test_success_of_any_system(self):
+        (self.folder / 'answer.py').write_text(
+            'import json, sys\n'
+            'for line in sys.stdin:\n'
+            '    asked = json.loads(line)\n'
+            '    answer = {"ready": True}\n'
+            '    if "trial" in asked:\n'
+            '        x = [asked[of][1]["from_first"]["translation_m"][0]\n'
+            '             for of in ("told_cameras", "true_cameras")]\n'
+            '        answer = {"error": abs(x[0] - x[1])}\n'
+            '    print(json.dumps(answer), flush=True)\n')
+        study = ('[study]\ntrials = 60\n[system]\nname = "program"\nsuccess_error = 3e-4\n'
+                 'command = "python3 answer.py"\n')
+        (self.folder / 's.toml').write_text(study)
+        words = ('plan', DATASHEET, '--board', '9x6', '--success', '0.9', '--study', 's.toml')
+        plan = self.json(*words)
+        rates = [row['success'] for row in plan['success']]
+        self.assertEqual(rates[0], 1)
+        self.assertEqual(rates, sorted(rates, reverse=True))
+        self.assertLess(rates[-1], 0.9)
+        self.assertGreater(plan['views'], 3)
+        self.assertIn('success 90.0 %: error at most 0.0003', self.call(*words).stdout)
+
+    def test_studies_that_cannot_be_planned(self):
+        for text, about in (
+                ('[sweep]\n"sources.calibration" = [1, 2]\n', 's.toml:4: the study has 2 cells'),
+                ('[calibration]\nviews = 5\n', 's.toml:3: [calibration] calibrates anew'),
+                ('[rig]\ntruth = "nominal"\nfile = "nominal"\n', 's.toml:4: rig.truth tells'),
+                ('[system]\nname = "calibration"\n', 's.toml:4: the error of a rig'),
+                ('[map]\nspacings_m = 1\n', 's.toml:4: unknown key')):
+            (self.folder / 's.toml').write_text('[study]\ntrials = 18\n' + text)
+            self.refused('plan', 'nominal', '--success', '0.9', '--study', 's.toml', about=about)
+        (self.folder / 's.toml').write_text('[study]\ntrials = 18\n')
+        self.refused('plan', 'nominal', '--success', '0.9', '--study', 's.toml', '--within-m', '0.1',
+                     about='--within-m: the study says it')
+        self.refused('plan', 'nominal', '--depth-error', '1', '--study', 's.toml',
+                     about='--study: only valid with --success')
+        self.refused('plan', 'nominal', '--success', '0.9', '--study', 'none.toml', about='none.toml')
+        self.refused('plan', 'nominal', '--success', '0.9', '--within-m', '2', about='--within-m')
+
     def test_too_few_trials_to_tell(self):
         # At every scale at most 12 of 12 succeed, and the limits hold 0.97: nothing is known.
         self.call('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', 'w.world.toml')

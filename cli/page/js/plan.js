@@ -5,14 +5,18 @@ import { count, metres, percent } from "./format.js";
 import { is_number } from "./numbers.js";
 import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
 import { headline_cell, world_of } from "./study.js";
+import { radius_words } from "./trials.js";
 
 const PLAN_CUT_M = 2.3;       // higher edges, above doors, are omitted for clarity
 const SHOWN_ERROR_M = 0.1;    // shorter errors would be hidden by the dots
-const MARKS = {
-  success: { name: "within 1 m", color: COLOUR.blue, symbol: "circle", size: 6 },
-  failure: { name: "failed: error above 1 m", color: COLOUR.red, symbol: "x", size: 8 },
+
+/** How the outcomes of a cell's trials are drawn. */
+const marks_of = (cell) => ({
+  success: { name: `within ${radius_words(cell)}`, color: COLOUR.blue, symbol: "circle", size: 6 },
+  failure: { name: `failed: error above ${radius_words(cell)}`, color: COLOUR.red, symbol: "x",
+    size: 8 },
   silent: { name: "failed: no answer", color: COLOUR.amber, symbol: "diamond-open", size: 9 },
-};
+});
 
 /** A row of a cell's trial_list as an object. */
 function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
@@ -72,7 +76,8 @@ function plan_words(cell) {
   const number = (outcome) => trials.filter((t) => t.outcome === outcome).length;
   const first = cell.trials > trials.length ? `, the first of ${count(cell.trials)}` : "";
   return `${cell.label ? `${cell.label}: ` : ""}${count(trials.length)} queries shown${first}:`
-    + ` ${count(number("success"))} localised within 1 m, ${count(number("failure"))} wrong and`
+    + ` ${count(number("success"))} localised within ${radius_words(cell)},`
+    + ` ${count(number("failure"))} wrong and`
     + ` ${count(number("silent"))} unanswered.`;
 }
 
@@ -114,7 +119,7 @@ function plan_plot(report, cell) {
     segments_trace(low.map((s) => [s[0], s[1], s[3], s[4]]),
       { name: "edges of the world", line: { color: COLOUR.light, width: 1 } }),
     route_trace(world?.route ?? []),
-    ...trial_traces((cell?.trial_list ?? []).map(trial_of)),
+    ...trial_traces((cell?.trial_list ?? []).map(trial_of), marks_of(cell)),
   ];
   const layout = {
     xaxis: axis("x, m", { range: x, showgrid: false, showline: false, constrain: "domain" }),
@@ -132,7 +137,7 @@ function route_trace(legs) {
     line: { color: COLOUR.green, width: 2, dash: "dot" } };
 }
 
-function trial_traces(trials) {
+function trial_traces(trials, marks) {
   const answered = trials.filter((t) => is_number(t.answer_x));
   const lines = (chosen, name, color, width) => segments_trace(
     chosen.map((t) => [t.x, t.y, t.answer_x, t.answer_y]),
@@ -141,8 +146,8 @@ function trial_traces(trials) {
     lines(answered.filter((t) => t.outcome === "failure"), "to the wrong estimate", COLOUR.red, 1),
     lines(answered.filter((t) => t.outcome === "success" && t.error_m > SHOWN_ERROR_M),
       "error above 0.1 m", COLOUR.blue, 1.5),
-    ...Object.keys(MARKS).map((outcome) =>
-      dots_trace(trials.filter((t) => t.outcome === outcome), MARKS[outcome])),
+    ...Object.keys(marks).map((outcome) =>
+      dots_trace(trials.filter((t) => t.outcome === outcome), marks[outcome])),
   ];
 }
 

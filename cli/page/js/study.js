@@ -6,7 +6,7 @@ import {
   significant,
 } from "./format.js";
 import { is_number } from "./numbers.js";
-import { test_words, trial_words } from "./trials.js";
+import { radius_of_cells, radius_words, test_words, trial_words } from "./trials.js";
 
 const PROTOCOLS = {
   near_path: "queries up to 0.1 m from the recorded route, heading within ± 5° of it",
@@ -46,7 +46,7 @@ export function headline(report) {
     heading: study.cells.length > 1 ? `Localisation success at ${at_words(cell)}`
       : "Localisation success",
     share: cell.success,
-    of: "of queries localised within 1 m of the true position",
+    of: `of queries localised within ${radius_words(cell)} of the true position`,
     words: headline_words(study, cell),
     tiles: headline_tiles(report, cell),
   });
@@ -66,9 +66,8 @@ export function headline_box({ heading, share, of, words, tiles }) {
 export const at_words = (cell) => cell.label === "as set" ? "the settings of the study" : cell.label;
 
 function headline_words(study, cell) {
-  const words = [`In ${counted(cell.trials, "trial")}, the robot localised itself within 1 m of`
-    + ` its true`
-    + ` position ${percent(cell.success)} of the time.`, interval_words(cell)];
+  const words = [`In ${counted(cell.trials, "trial")}, the robot localised itself within`
+    + ` ${radius_words(cell)} of its true position ${percent(cell.success)} of the time.`, interval_words(cell)];
   const clustered = cell.success_interval_95 && cell.success_interval_binomial_95;
   const notes = ["Unanswered queries count as failures; heading is not evaluated."];
   if (clustered) {
@@ -98,7 +97,7 @@ function headline_tiles(report, cell) {
   return [
     tile("Query protocol", protocol, PROTOCOLS[protocol]),
     tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: the most that`
-      + ` one look at lines allows`),
+      + ` one look at lines allows, within 1 m`),
     tile("Median error", metres(cell.median_error_m), is_number(cell.median_heading_error_deg)
       && `and ${significant(cell.median_heading_error_deg, 2)}° in heading, of answered queries`),
     tile("CPU time per query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)
@@ -121,7 +120,8 @@ export function cells_section(report) {
   const several = study.cells.length > 1;
   const made = section("cells", several ? "All cells" : "Results of the trials", paragraph(
     several && "A cell is one combination of settings; all cells use the same queries. ",
-    "Success: position within 1 m of the truth; unanswered queries count as failures. Coverage:"
+    `Success: position within ${radius_of_cells(study)} of the truth; unanswered queries count as`
+      + " failures. Coverage:"
       + " fraction of answered queries. Errors are medians over answered queries. CPU time is"
       + " from features in memory to the answer."));
   made.append(table(cells_caption(study), cell_columns(study), study.cells,

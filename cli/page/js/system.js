@@ -7,7 +7,7 @@ import {
   at_words, cell_key, cells_caption, headline_box, headline_cell, interval_words, outcome_columns,
   share_column, tile, time_columns,
 } from "./study.js";
-import { error_of, limit_words } from "./trials.js";
+import { error_of, limit_words, one_limit } from "./trials.js";
 
 // Studies of other systems than localisers: calibrations, matchers, servoing robots, programs.
 
@@ -80,7 +80,6 @@ export function system_cells_section(study) {
   made.append(...failures_tables(study), ...measured_tables(study));
 }
 
-const one_limit = ({ cells }) => new Set(cells.map((cell) => cell.success_error)).size === 1;
 
 function cell_columns(study) {
   const { write } = error_of(study);

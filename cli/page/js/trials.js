@@ -7,11 +7,11 @@ import { is_number } from "./numbers.js";
 // with an error in metres; another system (study.system) names its error and its unit, which may
 // be empty.
 
-const QUERIES = {
+const queries = (radius) => ({
   noun: "queries",
-  only_one: "queries that only one of two cells localised within 1 m",
-  one_both_neither: "Queries localised within 1 m by one, both or neither of the two cells",
-};
+  only_one: `queries that only one of two cells localised within ${radius}`,
+  one_both_neither: `Queries localised within ${radius} by one, both or neither of the two cells`,
+});
 
 const TRIALS = {
   noun: "trials",
@@ -19,7 +19,17 @@ const TRIALS = {
   one_both_neither: "Trials that succeeded in one, both or neither of the two cells",
 };
 
-export const trial_words = (study) => study.system ? TRIALS : QUERIES;
+/** Up to which distance from its true position a query of the cell is localised: "1 m". */
+export const radius_words = (cell) => `${setting(cell?.success_error ?? 1)}${NBSP}m`;
+
+/** Whether all cells have one limit of success. */
+export const one_limit = ({ cells }) => new Set(cells.map((cell) => cell.success_error)).size === 1;
+
+/** The same distance in words for all cells of a study. */
+export const radius_of_cells = (study) =>
+  one_limit(study) ? radius_words(study.cells[0]) : "the cell's limit";
+
+export const trial_words = (study) => study.system ? TRIALS : queries(radius_of_cells(study));
 
 /** Other systems have blocks of trials where localisers have recorded maps. */
 export const test_words = (study, test) => study.system ? test.replace("maps", "blocks") : test;
@@ -47,4 +57,5 @@ export const limit_words = ({ system }, cell) =>
 
 /** When a trial of the cell succeeds. */
 export const success_words = (study, cell) =>
-  study.system ? `${study.system.title} ${limit_words(study, cell)}` : "error at most 1 m";
+  study.system ? `${study.system.title} ${limit_words(study, cell)}`
+    : `error at most ${radius_words(cell)}`;

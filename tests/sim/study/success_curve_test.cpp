@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 #include <vector>
 
-#include "calib/rig_estimate.h"
-#include "sim/experiment.h"
-#include "tests/support/small_office.h"
+#include "sim/study/study.h"
+#include "sim/systems/systems.h"
+#include "tests/sim/study/stored_example.h"
+#include "tests/support/example_study.h"
 
 namespace vernier {
 
@@ -45,16 +48,14 @@ TEST(SuccessCurve, WhatIsNeverMetOrAlwaysMetIsSaid) {
   EXPECT_EQ(never.low, 0);
 }
 
+const std::string office = "[map]\nspacing_m = 1\n";
+
 TEST(SuccessCurve, IsTheSameForAnyNumberOfThreadsAndFallsWithTheError) {
-  ExperimentSettings settings;
-  settings.map_spacing_m = 1;
-  SuccessCurveOptions options{.psi_c = {0, 1, 60}, .trials = 18, .threads = 1};
-  const auto& rig = test::nominal_rig();
-  const auto one =
-      success_curve(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options);
+  const Study study = test::office_study("[study]\ntrials = 18\n" + office);
+  SuccessCurveOptions options{.psi_c = {0, 1, 60}, .threads = 1};
+  const auto one = success_curve(study, options);
   options.threads = 2;
-  const auto two =
-      success_curve(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options);
+  const auto two = success_curve(study, options);
   ASSERT_EQ(one.size(), 3u);
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].success, two[i].success);
@@ -63,30 +64,56 @@ TEST(SuccessCurve, IsTheSameForAnyNumberOfThreadsAndFallsWithTheError) {
   EXPECT_GT(one[0].success, one[2].success);
 }
 
+/// It is a study that sweeps the scale, of which nothing is stored.
+TEST(SuccessCurve, AgreesWithAStudyThatSweepsTheScale) {
+  register_systems();
+  const std::string servo = "[system]\nname = \"servoing\"\nsuccess_error = 0.05\n",
+                    near = "[system]\nname = \"localiser\"\nsuccess_error = 0.05\n" + office,
+                    sweep = "[sweep]\n\"sources.calibration\" = [0, 3, 30]\n";
+  for (const std::string& system : {servo, near}) {
+    const std::string text = "[study]\ntrials = 18\nseed = 5\n" + system;
+    const test::TestFolder folder("success_curve");
+    const Study swept = test::office_study(text + sweep);
+    run_study(swept, {folder / "a", 2, {}, {}, {}});
+    const StudyResults results = study_results(swept, folder / "a");
+    const auto curve = success_curve(test::office_study(text), {.psi_c = {0, 3, 30}, .threads = 2});
+    ASSERT_EQ(curve.size(), results.cells.size());
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      EXPECT_EQ(curve[i].success, results.cells[i].summary.success) << system << i;
+      EXPECT_EQ(curve[i].interval_95, results.cells[i].summary.success_interval_95.value());
+    }
+    EXPECT_GT(curve[0].success, curve[2].success) << system;
+  }
+}
+
 // Nearly all edges are lost, and little else goes wrong: without that loss all is well.
 TEST(SuccessCurve, TheCauseThatLimitsMostComesFirst) {
-  ExperimentSettings settings;
-  settings.map_spacing_m = 1;
-  settings.sources.edge_loss = 0.93;
-  const auto& rig = test::nominal_rig();
-  const SuccessCurveOptions options{.psi_c = {0}, .trials = 24, .threads = 2};
-  const std::vector<LimitingCause> causes =
-      limiting_causes(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options);
+  const auto with_loss = [](const std::string& loss) {
+    return test::office_study("[study]\ntrials = 24\n" + office + "[sources]\nedge_loss = " + loss +
+                              "\n");
+  };
+  const SuccessCurveOptions options{.psi_c = {0}, .threads = 2};
+  const std::vector<LimitingCause> causes = limiting_causes(with_loss("0.93"), options);
   ASSERT_GT(causes.size(), 2u);
   EXPECT_EQ(causes[0].name, "edge_loss");
-  const double now =
-      success_curve(test::small_office_visibility(), rig.rig, *rig.covariance, settings, options)[0]
-          .success;
+  const double now = success_curve(with_loss("0.93"), options)[0].success;
   EXPECT_GT(causes[0].success, now + 0.3);
   EXPECT_LT(causes[1].success, now + 0.3);
   EXPECT_TRUE(std::none_of(causes.begin(), causes.end(),
                            [](const LimitingCause& c) { return c.name == "calibration"; }));
   // What is switched off already limits nothing.
-  settings.sources.edge_loss = 0;
-  for (const LimitingCause& cause : limiting_causes(test::small_office_visibility(), rig.rig,
-                                                    *rig.covariance, settings, options)) {
+  for (const LimitingCause& cause : limiting_causes(with_loss("0"), options)) {
     EXPECT_NE(cause.name, "edge_loss");
   }
+}
+
+/// A source of error that does not act on a system does not limit it.
+TEST(SuccessCurve, OnlySourcesThatActAreCauses) {
+  register_systems();
+  const Study study = test::office_study(
+      "[study]\ntrials = 12\n[system]\nname = \"program\"\ncommand = \"none\"\nsuccess_error = "
+      "1\n");
+  EXPECT_TRUE(limiting_causes(study).empty());
 }
 
 }  // namespace

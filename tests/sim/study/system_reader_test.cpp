@@ -97,7 +97,8 @@ TEST(SystemReader, RefusesWhatIsNone) {
                    "s.toml:5: system.range_m = -3 is out of range");
   expect_complaint("[system]\nname = \"calibration\"\nsuccess_error = 0\n", "not above 0");
   expect_complaint("[system]\nname = \"calibration\"\nsuccess_error = nan\n", "s.toml:5");
-  expect_complaint("[system]\nname = \"localiser\"\nsuccess_error = 2\n", "success_error");
+  expect_complaint("[system]\nname = \"localiser\"\nsuccess_error = 2\n", "s.toml:5");
+  expect_complaint("[system]\nname = \"localiser\"\nsuccess_error = 1.01\n", "is above 1 m");
   expect_complaint("[system]\nname = \"servoing\"\ngoal = \"here\"\n",
                    "use taught, recorded or model");
   expect_complaint("[system]\nname = \"servoing\"\ndoor = \"\"\n", "system.door is empty");

@@ -199,6 +199,61 @@ TEST(Systems, AnotherLimitNeedsNoNewTrials) {
   }
 }
 
+/// Of a localiser too, whose trials, stated probabilities and world's ceiling are the same.
+TEST(Systems, ALocalisersLimitNeedsNoNewTrials) {
+  const auto within = [](const std::string& limit) {
+    return system_study(
+        "[study]\ntrials = 60\nseed = 4\n[system]\nname = \"localiser\"\nsuccess_error = " + limit +
+        "\n[map]\nspacing_m = 1\n[sources]\ncalibration = 3\n");
+  };
+  const test::TestFolder folder("systems");
+  const Study usual = system_study(
+      "[study]\ntrials = 60\nseed = 4\n[map]\nspacing_m = 1\n[sources]\n"
+      "calibration = 3\n");
+  run_study(usual, {folder / "a", 2, {}, {}, {}});
+  const CellResult before = study_results(usual, folder / "a").cells[0];
+  for (const std::string limit : {"1", "0.1", "0.03"}) {
+    const Study strict = within(limit);
+    EXPECT_EQ(study_difference(usual, strict), "");
+    int asked = -1;
+    StudyRun run{folder / "a", 2, {}, {}, {}};
+    run.progress = [&](int, int total) { asked = total; };
+    run_study(strict, run);
+    EXPECT_EQ(asked, 0);
+    const CellResult after = study_results(strict, folder / "a").cells[0];
+    const auto right = std::count_if(
+        before.trials.begin(), before.trials.end(),
+        [&](const TrialResult& t) { return t.answered() && t.error <= std::stod(limit); });
+    EXPECT_DOUBLE_EQ(after.summary.success, static_cast<double>(right) / 60);
+    EXPECT_EQ(after.ceiling->success, before.ceiling->success);
+    ASSERT_EQ(after.stated.reliability().size(), before.stated.reliability().size());
+    for (std::size_t i = 0; i < before.stated.reliability().size(); ++i) {
+      EXPECT_EQ(after.stated.reliability()[i].wrong, before.stated.reliability()[i].wrong);
+    }
+  }
+  EXPECT_LT(study_results(within("0.03"), folder / "a").cells[0].summary.success,
+            before.summary.success);
+}
+
+/// A budget by width goes by the cell's own limit.
+TEST(Systems, ALocalisersBudgetIsByItsLimit) {
+  const std::string text =
+      "[study]\ntrials = 600\nseed = 4\ninterval_width = 0.4\n[map]\nspacing_m = 1\n[sources]\n"
+      "calibration = 3\n";
+  const std::string name = "[system]\nname = \"localiser\"\n";
+  const Study swept = system_study(text + name + "[sweep]\n\"system.success_error\" = [1, 0.04]\n");
+  const test::TestFolder folder("systems");
+  run_study(swept, {folder / "a", 2, {}, {}, {}});
+  const StudyResults both = study_results(swept, folder / "a");
+  ASSERT_EQ(both.cells.size(), 2U);
+  EXPECT_LT(both.cells[0].summary.trials, both.cells[1].summary.trials);
+  const Study alone = system_study(text + name + "success_error = 0.04\n");
+  run_study(alone, {folder / "b", 2, {}, {}, {}});
+  const CellSummary& by_itself = study_results(alone, folder / "b").cells[0].summary;
+  EXPECT_EQ(both.cells[1].summary.trials, by_itself.trials);
+  EXPECT_EQ(both.cells[1].summary.success, by_itself.success);
+}
+
 /// Cells that differ in it share their trials, and each goes as far as its own interval needs.
 TEST(Systems, SweptLimitsShareTrialsAndHaveTheirOwnBudgets) {
   const std::string start =

@@ -66,6 +66,12 @@ class Systems(unittest.TestCase):
             self.assertIn(part, done.stderr)
         self.assertFalse((self.folder / 'results').exists())
 
+    def refused_in_place(self, text, part):
+        """As `refused`, of a folder that stands."""
+        done = self.run_study(text, code=2)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn(part, done.stderr)
+
     def has_embree(self):
         doctor = json.loads(self.call('doctor', '--json').stdout)['findings']
         return {one['what']: one['found'] for one in doctor}['Embree']
@@ -196,6 +202,26 @@ class Systems(unittest.TestCase):
         done = self.call('study', 'merge', 'results', 'other', '-o', 'merged')
         self.assertEqual(done.returncode, 2)
         self.assertIn('system.success_error is', done.stderr)
+
+    def test_how_near_a_localiser_is(self):
+        near_by = shorter('localiser', 12) + '[map]\nspacing_m = 2\n'
+        done = self.run_study(near_by)
+        self.assertIn('success: answered, within system.success_error', done.stdout)
+        cells = self.cells()['cells']
+        self.assertEqual([cell['success_error'] for cell in cells], 3 * [0.05] + 3 * [0.2] + 3 * [1])
+        rates = [cell['success'] for cell in cells]
+        for near, far in zip(rates[:6], rates[3:]):
+            self.assertLessEqual(near, far)
+        rows = self.rows('--trials')
+        right = sum(row['success'] == 'True' or row['success'] == '1' for row in rows)
+        self.assertEqual(right, round(12 * sum(rates)))
+        self.assertEqual(self.cells()['blocks_total'] * 3, len({(row['cell'], row['block']) for row in rows}))
+        one = near_by.replace('"system.success_error" = [0.05, 0.2, 1]\n', '').replace(
+            '"localiser"\n', '"localiser"\nsuccess_error = 0.2\n')
+        self.assertIn('within 0.2 m', self.run_study(one, output='one').stdout)
+        page = self.call('report', 'one', '-o', 'one.html')
+        self.assertEqual(page.returncode, 0, page.stderr)
+        self.refused_in_place(one.replace('0.2', '1.5'), 'study.toml:6: system.success_error is above 1 m')
 
     def test_an_edited_program_begins_anew(self):
         self.run_study(shorter('program', 6))

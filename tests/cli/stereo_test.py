@@ -199,7 +199,9 @@ class Made(Case):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertIn(f'misaligned by {down}.0', done.stderr)
             self.assertTrue((self.folder / 'seen/edges.csv').exists())
-            self.assertTrue(json.loads(done.stdout)['vertical_field']['misaligned'])
+            said = json.loads(done.stdout)
+            self.assertTrue(said['vertical_field']['misaligned'])
+            self.assertEqual(len(said['doubts']), 1)  # one line for one cause
             self.works(*self.arguments(right='lower'), '-q', '--repair')
 
     def test_an_offset_says_that_disparities_are_negative(self):
@@ -388,6 +390,7 @@ class Raw(CalibratedCase):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn('the rows of the two images are not aligned', done.stderr)
         self.assertIn('rectify the pair first', done.stderr)
+        self.assertEqual(done.stderr.count('trustworthy: '), 1)  # one line for one cause
 
     def test_repair(self):
         rig = json.loads(self.rig.read_text())

@@ -72,6 +72,11 @@ void check_can_be_planned(const StudyFile& study) {
                 fmt::format("the study has {} cells", study.cells.size()),
                 "give plan a study of one, without [sweep] and [one_at_a_time]");
   }
+  if (const SystemKind& kind = system_of(study); kind.sources == SourcesUsed::none) {
+    throw Error(place_of(study, "system.name"),
+                "the error of a rig's calibration does not act on " + kind.noun,
+                "give --depth-error or --projection-error, or another system");
+  }
   const char* remedy = "leave it out: plan draws what is told of the rig";
   if (cell.told.calibration) {
     throw Error(place_of(study, "calibration"), "[calibration] calibrates anew for each trial",
@@ -81,11 +86,6 @@ void check_can_be_planned(const StudyFile& study) {
     throw Error(place_of(study, "rig.truth"), "rig.truth tells another rig than the true one",
                 remedy);
   }
-  const SystemKind& kind = system_of(study);
-  if (kind.sources != SourcesUsed::none) return;
-  throw Error(place_of(study, "system.name"),
-              "the error of a rig's calibration does not act on " + kind.noun,
-              "give --depth-error or --projection-error, or another system");
 }
 
 /// The study of a localiser that the options describe.

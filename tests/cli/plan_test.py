@@ -32,8 +32,9 @@ class Base(unittest.TestCase):
                               cwd=self.folder, timeout=300)
 
     def json(self, *words, code=0):
+        """Of either exit code if `code` is None: whether so few trials suffice is not the question."""
         done = self.call(*words, '--json', '-q')
-        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(done.returncode, (0, 3) if code is None else (code,), done.stderr)
         return json.loads(done.stdout)
 
     def refused(self, *words, about):
@@ -136,8 +137,8 @@ class Plan(Base):
     def test_success_within_a_distance(self):
         self.call('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', 'w.world.toml')
         words = ['plan', DATASHEET, '--board', '9x6', '--success', '0.2', '--trials', '18']
-        near = self.json(*words, '--world', 'w.world.toml', '--within-m', '0.03')
-        far = self.json(*words, '--world', 'w.world.toml')
+        near = self.json(*words, '--world', 'w.world.toml', '--within-m', '0.03', code=None)
+        far = self.json(*words, '--world', 'w.world.toml', code=None)
         self.assertEqual((near['target']['success_error'], far['target']['success_error']), (0.03, 1))
         rates = [[row['success'] for row in plan['success']] for plan in (near, far)]
         self.assertTrue(all(a <= b for a, b in zip(*rates)), rates)
@@ -146,7 +147,7 @@ class Plan(Base):
         (self.folder / 's.toml').write_text(
             '[study]\ntrials = 18\nprotocol = "path"\n[world]\nfile = "w.world.toml"\n'
             '[system]\nname = "localiser"\nsuccess_error = 0.03\n')
-        same = self.json(*words[:-2], '--study', 's.toml')
+        same = self.json(*words[:-2], '--study', 's.toml', code=None)
         self.assertEqual(near, same)
 
     def test_success_of_any_system(self):
@@ -160,7 +161,7 @@ class Plan(Base):
             '             for of in ("told_cameras", "true_cameras")]\n'
             '        answer = {"error": abs(x[0] - x[1])}\n'
             '    print(json.dumps(answer), flush=True)\n')
-        study = ('[study]\ntrials = 60\n[system]\nname = "program"\nsuccess_error = 3e-4\n'
+        study = ('[study]\ntrials = 3000\n[system]\nname = "program"\nsuccess_error = 3e-4\n'
                  'command = "python3 answer.py"\n')
         (self.folder / 's.toml').write_text(study)
         words = ('plan', DATASHEET, '--board', '9x6', '--success', '0.9', '--study', 's.toml')
@@ -171,6 +172,9 @@ class Plan(Base):
         self.assertLess(rates[-1], 0.9)
         self.assertGreater(plan['views'], 3)
         self.assertIn('success 90.0 %: error at most 0.0003', self.call(*words).stdout)
+        # Every draw of the rig is an answer: success is that of a normal error of the baseline.
+        low, high = plan['success'][-1]['success_interval_95']
+        self.assertLess(high - low, 0.1)
 
     def test_studies_that_cannot_be_planned(self):
         for text, about in (

@@ -213,7 +213,7 @@ class Systems(unittest.TestCase):
         for near, far in zip(rates[:6], rates[3:]):
             self.assertLessEqual(near, far)
         rows = self.rows('--trials')
-        right = sum(row['success'] == 'True' or row['success'] == '1' for row in rows)
+        right = sum(row['success'] == 'true' for row in rows)
         self.assertEqual(right, round(12 * sum(rates)))
         self.assertEqual(self.cells()['blocks_total'] * 3, len({(row['cell'], row['block']) for row in rows}))
         one = near_by.replace('"system.success_error" = [0.05, 0.2, 1]\n', '').replace(

@@ -132,6 +132,17 @@ class Sequence {
   int views_, drawn_ = 0;
 };
 
+/// The target that a sequence aims at.
+double drawn_target(double target_sd, const ViewPlanOptions& options, int sequence) {
+  RandomStream draws({.seed = options.seed,
+                      .trial = static_cast<std::uint32_t>(sequence),
+                      .source = plan_source,
+                      .eye = 3});
+  const double z = draws.normal();
+  const double log_sd = z < 0 ? options.target_log_sd_below : options.target_log_sd_above;
+  return target_sd * std::exp(log_sd * z);
+}
+
 template <class Work>
 void for_sequences(const ViewKnowledge& known,
                    const std::string& what,
@@ -176,7 +187,8 @@ ViewsNeeded views_needed(const ViewKnowledge& known,
   if (!(target_sd > 0)) throw Error("target", "is not a number above 0", "give one");
   std::vector<double> numbers;
   for_sequences(known, what, at_m, options, [&](Sequence& sequence) {
-    numbers.push_back(sequence.first_within(target_sd, options.most_views));
+    const double target = drawn_target(target_sd, options, static_cast<int>(numbers.size()));
+    numbers.push_back(sequence.first_within(target, options.most_views));
   });
   ViewsNeeded needed;
   needed.views = static_cast<int>(quantile(numbers, 0.5, QuantileKind::lower));

@@ -90,6 +90,9 @@ struct ViewPlanOptions {
   int most_views = 2000;
   int sequences = 400;  ///< of views, shared among the pools
   std::uint64_t seed = 1;
+  /// How well the target of views_needed is itself known: standard deviations of its logarithm
+  /// towards smaller and larger targets.
+  double target_log_sd_below = 0, target_log_sd_above = 0;
 };
 
 /// The number of views in all, those taken included and at least three, after which a standard
@@ -108,7 +111,8 @@ struct SdAfter {
   Interval interval;  ///< `confidence` of the sequences lie within
 };
 
-/// Simulated: each sequence draws a pool, the noise, and views of the pool, by (seed, sequence).
+/// Simulated: each sequence draws a pool, the noise, the target and views of the pool, by (seed,
+/// sequence).
 /// `what` and `at_m` are those of target_quantity, which throws Error.
 ViewsNeeded views_needed(const ViewKnowledge& known,
                          const std::string& what,

@@ -208,14 +208,14 @@ void run(const PlanArguments& o, Session& session) {
   const ViewPlanOptions how{.seed = o.seed};
   with_errors_of(name, [&] {
     if (plan.sd_allowed) {
-      plan.needed = views_needed(plan.known, what, plan.target.at_m, *plan.sd_allowed, how);
-      if (plan.scale) widen_by_scale(plan, plan.known, how, *plan.needed);
+      const auto needed_of = [&](const ViewKnowledge& known) {
+        return plan.scale ? views_for_success(plan, known, how)
+                          : views_needed(known, what, plan.target.at_m, *plan.sd_allowed, how);
+      };
+      plan.needed = needed_of(plan.known);
       const auto better =
           has_partial_frames(plan.known) ? with_views_by_all(plan.known) : std::nullopt;
-      if (better) {
-        plan.needed_by_all = views_needed(*better, what, plan.target.at_m, *plan.sd_allowed, how);
-        if (plan.scale) widen_by_scale(plan, *better, how, *plan.needed_by_all);
-      }
+      if (better) plan.needed_by_all = needed_of(*better);
       if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
         plan.limit =
             fmt::format("it takes more than {} of this kind; ", counted(how.most_views, "view"));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "calib/board_observations.h"
@@ -55,14 +56,15 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
     return;
   }
   const ViewsNeeded& needed = *plan.needed;
-  if (needed.interval.high > 2 * needed.interval.low + 1) {
+  const bool by_trials = plan.scale.has_value();
+  if (!std::isfinite(needed.interval.high)) {
     session.add_trust_warning(
-        fmt::format("the number of views is known to {:.0f} to {:.0f} only: give more --trials",
-                    needed.interval.low, needed.interval.high));
+        "the number of views has no upper end, for the trials leave open whether the target can be "
+        "reached: give more --trials");
   } else if (needed.confidence < unsure_below) {
     session.add_trust_warning(fmt::format(
-        "the number of views is known to a factor of two with {:.0f} % confidence only: {}",
-        100 * needed.confidence,
+        "the number of views is known to a factor of two with {:.0f} % confidence only: {}{}",
+        100 * needed.confidence, by_trials ? "give more --trials, or " : "",
         plan.from_calibration ? "take some more views and plan again"
                               : "calibrate from five views or more and plan from these"));
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -218,21 +219,17 @@ void allow_for_success(Study study, int threads, PlanResult& plan, Session& sess
   if (plan.scale->psi_c > 0) plan.sd_allowed = plan.scale->psi_c * reference_sd;
 }
 
-void widen_by_scale(const PlanResult& plan,
-                    const ViewKnowledge& known,
-                    const ViewPlanOptions& how,
-                    ViewsNeeded& needed) {
-  const double per_scale = *plan.sd_allowed / plan.scale->psi_c;
-  const double loose = std::max(plan.scale->high, plan.scale->psi_c) * per_scale;
-  needed.interval.low = views_needed(known, "depth", plan.target.at_m, loose, how).interval.low;
-  if (plan.scale->low > 0) {
-    const ViewsNeeded most =
-        views_needed(known, "depth", plan.target.at_m, plan.scale->low * per_scale, how);
-    needed.interval.high = most.interval.high;
-    needed.is_reached = most.is_reached;
-  } else {
-    needed.interval.high = std::numeric_limits<double>::infinity();
-  }
+ViewsNeeded views_for_success(const PlanResult& plan,
+                              const ViewKnowledge& known,
+                              ViewPlanOptions how) {
+  constexpr double z = 1.959964;  // of the 95 % that the scale's ends hold
+  const ScaleNeeded& scale = *plan.scale;
+  const bool may_be_out_of_reach = !(scale.low > 0);
+  if (!may_be_out_of_reach) how.target_log_sd_below = std::log(scale.psi_c / scale.low) / z;
+  how.target_log_sd_above = std::log(std::max(scale.high / scale.psi_c, 1.0)) / z;
+  ViewsNeeded needed = views_needed(known, "depth", plan.target.at_m, *plan.sd_allowed, how);
+  if (may_be_out_of_reach) needed.interval.high = std::numeric_limits<double>::infinity();
+  return needed;
 }
 
 }  // namespace vernier::cli

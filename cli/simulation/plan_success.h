@@ -35,10 +35,10 @@ Study study_of(const SuccessTrials& trials,
 /// Success against the calibration's error, and from it the depth error that is allowed.
 void allow_for_success(Study study, int threads, PlanResult& plan, Session& session);
 
-/// Widens an interval by what the trials leave open, which comes on top of what the views do.
-void widen_by_scale(const PlanResult& plan,
-                    const ViewKnowledge& known,
-                    const ViewPlanOptions& how,
-                    ViewsNeeded& needed);
+/// The views that a success rate takes: how well the trials know the scale that it allows is drawn
+/// with the views. Without an upper end if they leave open whether it can be reached.
+ViewsNeeded views_for_success(const PlanResult& plan,
+                              const ViewKnowledge& known,
+                              ViewPlanOptions how);
 
 }  // namespace vernier::cli

@@ -85,6 +85,25 @@ TEST(ViewsNeeded, AnIntervalIsNeverWiderThanTwoAndSaysWhatItHolds) {
   EXPECT_NEAR(unsure.confidence, 0.271, 0.08);
 }
 
+TEST(ViewsNeeded, AnUncertainTargetWidensTheIntervalByItsSquare) {
+  const double target = 1.000001 / std::sqrt(100);
+  const ViewPlanOptions above{.sequences = 4000, .target_log_sd_above = 0.05};
+  const ViewsNeeded needed = views_needed(counting(1), counted, 1, target, above);
+  EXPECT_EQ(needed.views, 100);
+  EXPECT_EQ(needed.interval.high, 100);
+  // n goes with the inverse square of the target: log n is half normal below, to z = 1.96.
+  EXPECT_NEAR(needed.interval.low, 100 * std::exp(-2 * 1.96 * 0.05), 2);
+  const ViewsNeeded below = views_needed(counting(1), counted, 1, target,
+                                         {.sequences = 4000, .target_log_sd_below = 0.05});
+  EXPECT_EQ(below.interval.low, 100);
+  EXPECT_NEAR(below.interval.high, 100 * std::exp(2 * 1.96 * 0.05), 2);
+  // With the noise of the views together: by the square root of the sum of squares.
+  const ViewsNeeded both =
+      views_needed(counting(1, 1, 0.08), counted, 1, target,
+                   {.sequences = 4000, .target_log_sd_below = 0.06, .target_log_sd_above = 0.06});
+  EXPECT_NEAR(both.interval.high, 100 * std::exp(2 * 1.96 * 0.1), 4);
+}
+
 TEST(ViewsNeeded, TheStandardDeviationNowIsThatOfTheViewsTaken) {
   const RigEstimate now = calibrated(10);
   const ViewKnowledge known = knowledge_of(now, 1, "rig.json");

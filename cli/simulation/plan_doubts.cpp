@@ -56,7 +56,10 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
     return;
   }
   const ViewsNeeded& needed = *plan.needed;
-  const bool by_trials = plan.scale.has_value();
+  // Views go with the inverse square of the scale.
+  constexpr double wide = 1.5;
+  const bool by_trials =
+      plan.scale && std::pow(plan.scale->high / plan.scale->low, 2) > wide;  // also if low is 0
   if (!std::isfinite(needed.interval.high)) {
     session.add_trust_warning(
         "the number of views has no upper end, for the trials leave open whether the target can be "

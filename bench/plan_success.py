@@ -108,16 +108,17 @@ def rising(rates):
 
 
 def crossing(views, rates, target):
-    """Where a rising rate reaches the target, linear in the logarithm; None beyond the last."""
+    """Where a rising rate reaches the target, linear in the logarithm; 0 before the first number,
+    infinite beyond the last."""
     rates = rising(rates)
     for i, rate in enumerate(rates):
         if rate < target:
             continue
-        if i == 0 or rate == rates[i - 1]:
-            return views[i]
+        if i == 0:
+            return 0
         part = (target - rates[i - 1]) / (rate - rates[i - 1])
         return math.exp(math.log(views[i - 1]) + part * math.log(views[i] / views[i - 1]))
-    return None
+    return math.inf
 
 
 def numbers(low, middle, high):
@@ -134,7 +135,7 @@ def main():
     parser.add_argument('--within-m', type=float, default=0.05)
     parser.add_argument('--trials', type=int, default=300)
     options = parser.parse_args()
-    planned = within = overlaps = unknown = 0
+    planned = within = overlaps = unknown = censored = 0
     ratios = []
     for seed in range(options.first_seed, options.first_seed + options.rigs):
         with tempfile.TemporaryDirectory() as name:
@@ -157,19 +158,23 @@ def main():
             ends = [crossing(views, [cell['success_interval_95'][end] for cell in cells], target)
                     for end in (1, 0)]
         planned += 1
-        inside = reached is not None and round(low) <= round(reached) <= round(high)
+        # Three views are the fewest: what they reach is within an interval that begins there.
+        inside = round(low) <= round(max(3, reached) if low <= 3 else reached) <= round(high)
         within += inside
-        overlaps += (ends[0] or math.inf) <= high and (ends[1] or math.inf) >= low
-        if reached:
+        overlaps += ends[0] <= high and ends[1] >= low
+        if 0 < reached < math.inf:
             ratios.append(reached / plan['views'])
+        else:
+            censored += 1
         text = ' '.join(f'{n}: {cell["success"]:.3f}' for n, cell in zip(views, cells))
         print(f'{seed}: {trial.about}: {100 * target:.1f} % takes {plan["views"]} [{low:.0f}, {high:.0f}] '
-              f'views by the plan; {text}; reached at {reached and round(reached, 1)} '
-              f'[{ends[0] and round(ends[0], 1)}, {ends[1] and round(ends[1], 1)}]'
+              f'views by the plan; {text}; reached at {reached:.1f} '
+              f'[{ends[0]:.1f}, {ends[1]:.1f}]'
               f'{"" if inside else ", outside"}', flush=True)
     mean = math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else math.nan
     print(f'{within} of {planned} reached within the interval, {overlaps} with the limits of the '
-          f'study itself; reached / planned, geometric mean {mean:.2f}; no interval: {unknown}')
+          f'study itself; reached / planned, geometric mean {mean:.2f} of {len(ratios)}, {censored} beyond the numbers tried; '
+          f'no interval: {unknown}')
 
 
 if __name__ == '__main__':

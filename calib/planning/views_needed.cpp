@@ -136,8 +136,9 @@ class Sequence {
 double drawn_target(double target_sd, const ViewPlanOptions& options, int sequence) {
   RandomStream draws({.seed = options.seed,
                       .trial = static_cast<std::uint32_t>(sequence),
+                      .feature = 1,
                       .source = plan_source,
-                      .eye = 3});
+                      .eye = 2});
   const double z = draws.normal();
   const double log_sd = z < 0 ? options.target_log_sd_below : options.target_log_sd_above;
   return target_sd * std::exp(log_sd * z);

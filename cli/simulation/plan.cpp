@@ -14,13 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/decompositions.h"
 #include "calib/base/error_place.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/board_target.h"
 #include "calib/calibration/solve_again.h"
-#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/rig_part.h"
 #include "calib/planning/views_needed.h"
@@ -30,7 +28,6 @@
 #include "calib/simulated_board.h"
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
-#include "calib/uncertainty/target_quantity.h"
 #include "cli/program/chosen_cameras.h"
 #include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
@@ -192,9 +189,7 @@ void run(const PlanArguments& o, Session& session) {
   const RigFile file = read_rig(
       has_rig_of_study ? find_rig(name, std::filesystem::path(o.trials.study).parent_path())
                        : find_rig(name));
-  if (!has_rig_of_study) {  // else they are said
-    for (const std::string& warning : file.warnings) session.warn(warning);
-  }
+  for (const std::string& warning : file.warnings) session.warn(warning);
   const std::vector<int> cameras = chosen_cameras(file.estimate.rig, o.cameras);
   if (plan.target.quantity != "projection") require_chosen_pair(file.estimate.rig, o.cameras, name);
   know(o, file.estimate, cameras, name, plan);
@@ -216,7 +211,7 @@ void run(const PlanArguments& o, Session& session) {
       const auto better =
           has_partial_frames(plan.known) ? with_views_by_all(plan.known) : std::nullopt;
       if (better) plan.needed_by_all = needed_of(*better);
-      if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
+      if (plan.limit.empty() && !plan.needed->is_reached) {
         plan.limit =
             fmt::format("it takes more than {} of this kind; ", counted(how.most_views, "view"));
         plan.limit +=
@@ -288,7 +283,9 @@ void add_plan(CLI::App& app, Session& session) {
       ->check(finite_and_positive)
       ->capture_default_str();
   add_success_options(*verb, o->trials);
-  verb->add_option("--seed", o->seed, "seed of all draws")->capture_default_str();
+  verb->add_option("--seed", o->seed,
+                   "seed of all draws; with --study its own is that of the trials")
+      ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -37,6 +37,9 @@ std::string successes_text(const PlanResult& plan) {
         fmt::format("{:>15} times {:>9} [{:>6.1f}, {:>6.1f}]\n", at.psi_c, in_percent(at.success),
                     100 * at.interval_95.low, 100 * at.interval_95.high);
   }
+  if (plan.scale && plan.scale->beyond) {
+    text += "met at the largest error that was tried: fewer views may suffice\n";
+  }
   return text;
 }
 

@@ -16,8 +16,6 @@
 #include <vector>
 
 #include "calib/base/decompositions.h"
-#include "calib/base/error_place.h"
-#include "calib/base/shown_text.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/planning/views_needed.h"
@@ -68,8 +66,8 @@ Covariance reference_covariance(const ViewKnowledge& known) {
 void check_can_be_planned(const StudyFile& study) {
   const StudyCell& cell = study.cells[0];
   if (study.cells.size() != 1) {
-    const bool swept = !study.sweep_keys.empty();
-    throw Error(place_of(study, swept ? study.sweep_keys[0] : "one_at_a_time"),
+    const bool designed = study.lines.contains("one_at_a_time");
+    throw Error(place_of(study, designed ? "one_at_a_time" : study.sweep_keys[0]),
                 fmt::format("the study has {} cells", study.cells.size()),
                 "give plan a study of one, without [sweep] and [one_at_a_time]");
   }
@@ -177,8 +175,8 @@ Study study_of(const SuccessTrials& trials,
   } else {
     refuse_options(app, std::array{"--world", "--protocol", "--method", "--within-m"},
                    "the study says it");
-    study = load_study_of_another_rig(trials.study, session);
-    check_can_be_planned(study.file);
+    check_can_be_planned(read_study(trials.study));
+    study = load_study_without_rig(trials.study, session);
   }
   if (trials.study.empty() || app.count("--trials") > 0) {
     const bool shares_maps = study.file.cells[0].system.is_localiser();
@@ -222,13 +220,22 @@ void allow_for_success(Study study, int threads, PlanResult& plan, Session& sess
 ViewsNeeded views_for_success(const PlanResult& plan,
                               const ViewKnowledge& known,
                               ViewPlanOptions how) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double z = 1.959964;  // of the 95 % that the scale's ends hold
   const ScaleNeeded& scale = *plan.scale;
   const bool may_be_out_of_reach = !(scale.low > 0);
-  if (!may_be_out_of_reach) how.target_log_sd_below = std::log(scale.psi_c / scale.low) / z;
-  how.target_log_sd_above = std::log(std::max(scale.high / scale.psi_c, 1.0)) / z;
+  if (may_be_out_of_reach) {
+    how.widest = infinity;  // it has no upper end
+  } else {
+    how.target_log_sd_below = std::log(scale.psi_c / scale.low) / z;
+  }
+  how.target_log_sd_above = std::log(scale.high / scale.psi_c) / z;
   ViewsNeeded needed = views_needed(known, "depth", plan.target.at_m, *plan.sd_allowed, how);
-  if (may_be_out_of_reach) needed.interval.high = std::numeric_limits<double>::infinity();
+  const bool is_beyond = needed.views >= how.most_views;
+  if (may_be_out_of_reach || (!needed.is_reached && !is_beyond)) {
+    needed.interval.high = infinity;
+    needed.is_reached = true;
+  }
   return needed;
 }
 

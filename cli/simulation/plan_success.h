@@ -36,7 +36,8 @@ Study study_of(const SuccessTrials& trials,
 void allow_for_success(Study study, int threads, PlanResult& plan, Session& session);
 
 /// The views that a success rate takes: how well the trials know the scale that it allows is drawn
-/// with the views. Without an upper end if they leave open whether it can be reached.
+/// with the views. Without an upper end if they leave open whether it can be reached, or whether
+/// within so many views.
 ViewsNeeded views_for_success(const PlanResult& plan,
                               const ViewKnowledge& known,
                               ViewPlanOptions how);

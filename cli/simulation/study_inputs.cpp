@@ -188,11 +188,14 @@ void check_covariances(const Study& study) {
   }
 }
 
+enum class WithRig { yes, no };
+
 template <class FileOf>
-Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
+Study assemble(StudyFile file, Session& session, FileOf file_of_input, WithRig with_rig) {
   Study study;
   study.file = std::move(file);
   for (const StudyInput& input : named_files(study.file)) {
+    if (input.role == InputRole::rig && with_rig == WithRig::no) continue;
     load(input, file_of_input(input), study, session);
   }
   if (study.file.cells[0].system.is_localiser()) check_maps(study);
@@ -201,11 +204,15 @@ Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
 }
 
 /// The study of a text, its inputs beside it.
-Study assemble_beside(const std::string& text, const fs::path& place, Session& session) {
+Study assemble_beside(const std::string& text,
+                      const fs::path& place,
+                      Session& session,
+                      WithRig with_rig) {
   const StudyFile study = parse_study(text, place.string());
-  return assemble(study, session, [&](const StudyInput& input) {
+  const auto file = [&](const StudyInput& input) {
     return file_of(input, study, place.parent_path());
-  });
+  };
+  return assemble(study, session, file, with_rig);
 }
 
 }  // namespace
@@ -250,13 +257,13 @@ Study load_study(const fs::path& file, Session& session) {
 }
 
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
-  Study study = assemble_beside(text, place, session);
+  Study study = assemble_beside(text, place, session, WithRig::yes);
   check_covariances(study);
   return study;
 }
 
-Study load_study_of_another_rig(const fs::path& file, Session& session) {
-  return assemble_beside(read_whole(file), file, session);
+Study load_study_without_rig(const fs::path& file, Session& session) {
+  return assemble_beside(read_whole(file), file, session, WithRig::no);
 }
 
 Study open_folder(const fs::path& folder, Session& session) {
@@ -264,8 +271,9 @@ Study open_folder(const fs::path& folder, Session& session) {
     throw Error(folder.string(), "is not a study folder",
                 "give a folder written by vernier study -o");
   }
-  Study study = assemble(read_study(folder / study_copy, folder / sources_name), session,
-                         [&](const StudyInput& input) { return folder / input.copy; });
+  const auto file = [&](const StudyInput& input) { return folder / input.copy; };
+  Study study =
+      assemble(read_study(folder / study_copy, folder / sources_name), session, file, WithRig::yes);
   check_covariances(study);
   return study;
 }

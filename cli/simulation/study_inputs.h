@@ -37,9 +37,8 @@ Study load_study(const std::filesystem::path& file, Session& session);
 /// The same of a text, as above.
 Study load_study(const std::string& text, const std::filesystem::path& place, Session& session);
 
-/// The same where another rig, and another covariance, are to take the place of the study's, which
-/// then needs no covariance.
-Study load_study_of_another_rig(const std::filesystem::path& file, Session& session);
+/// The same without its true rig, for a caller that gives it one.
+Study load_study_without_rig(const std::filesystem::path& file, Session& session);
 
 /// The study of a results folder, by its own copies of the inputs, so that it can be moved.
 Study open_folder(const std::filesystem::path& folder, Session& session);

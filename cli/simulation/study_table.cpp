@@ -142,10 +142,14 @@ std::string cells_table(const StudyResults& results, const CellFigures& figures)
   return text_table(std::move(columns));
 }
 
-std::string shared_ceiling(const CellFigures& figures) {
+std::string shared_ceiling(const CellFigures& figures, const StudyResults& results) {
   if (!is_shared(figures.ceilings) || !figures.ceilings[0]) return {};
   const WorldCeiling& c = *figures.ceilings[0];
-  return fmt::format("world ceiling {:.1f} % {}, unaliased {:.1f} % of the queries\n",
+  const bool is_usual = std::all_of(
+      results.cells.begin(), results.cells.end(),
+      [](const CellResult& cell) { return cell.cell.system.success_error == success_radius_m; });
+  return fmt::format("world ceiling{} {:.1f} % {}, unaliased {:.1f} % of the queries\n",
+                     is_usual ? "" : fmt::format(" (within {:g} m)", success_radius_m),
                      100 * c.success, interval_text(c.success_interval_95), 100 * c.unaliased);
 }
 
@@ -155,8 +159,8 @@ bool exceeds_ceiling(const CellSummary& s, const std::optional<WorldCeiling>& ce
          s.success_interval_95->low > ceiling->success_interval_95.high;
 }
 
-std::string ceiling_line(const CellFigures& figures) {
-  std::string text = shared_ceiling(figures);
+std::string ceiling_line(const CellFigures& figures, const StudyResults& results) {
+  std::string text = shared_ceiling(figures, results);
   for (std::size_t i = 0; i < figures.summaries.size(); ++i) {
     if (!exceeds_ceiling(figures.summaries[i], figures.ceilings[i])) continue;
     return text +
@@ -314,7 +318,7 @@ std::string study_table(const Study& study, const StudyResults& results) {
   }
   std::string text = cells_table(results, figures) + measured_table(results, key_columns(results)) +
                      worlds_table(results) + comparisons_table(results) + "\n" +
-                     ceiling_line(figures) + conditions(study, results);
+                     ceiling_line(figures, results) + conditions(study, results);
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
   if (is_mixture(results.instruction_sets)) {
     text += fmt::format("computed with instruction sets {}: not comparable to the bit\n",

@@ -89,6 +89,7 @@ std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const bool designed = has_design(cells[b].cell);
     for (std::size_t a = b; a-- > 0;) {
       if (designed && !is_reference_of(cells[a].cell, cells[b].cell)) continue;
+      if (cells[a].cell.system.success_error != cells[b].cell.system.success_error) continue;
       if (!share_queries(cells[a], cells[b])) continue;
       pairs.emplace_back(a, b);
       break;

@@ -113,13 +113,15 @@ bool has_limit_of_rows(const SystemSettings& system) {
 
 }  // namespace
 
+void apply_limit(const StudyCell& cell, std::vector<TrialResult>& trials) {
+  for (TrialResult& trial : trials) trial.limit = cell.system.success_error;
+}
+
 std::vector<StoredBlock> blocks_of(const StudyCell& cell,
                                    const BlockRange& range,
                                    const StoredResults& stored) {
   std::vector<StoredBlock> blocks = stored.read(range);
-  for (StoredBlock& block : blocks) {
-    for (TrialResult& trial : block.trials) trial.limit = cell.system.success_error;
-  }
+  for (StoredBlock& block : blocks) apply_limit(cell, block.trials);
   return blocks;
 }
 

@@ -44,6 +44,9 @@ StudyWork study_work(const Study& study);
 /// agree on it.
 std::string work_fingerprint(const StudyWork& work);
 
+/// Makes trials succeed by the limit of their cell.
+void apply_limit(const StudyCell& cell, std::vector<TrialResult>& trials);
+
 /// The stored blocks of a range of a cell, their successes by the cell's limit: a row counts by
 /// that of the study that made it.
 std::vector<StoredBlock> blocks_of(const StudyCell& cell,

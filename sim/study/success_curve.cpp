@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <mutex>
 #include <string>
@@ -19,6 +20,7 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
@@ -82,15 +84,14 @@ StudyCell with_source(const StudyCell& cell,
 struct BlockCount {
   ClusterCount count;
   int failed = 0;
-  std::string why_failed;
+  std::string why_failed = {};
 };
 
-BlockCount counted(const std::vector<TrialResult>& trials, double success_error) {
-  BlockCount block;
-  for (TrialResult trial : trials) {
-    trial.limit = success_error;
-    ++block.count.trials;
-    block.count.successes += trial.success();
+BlockCount block_count(const StudyCell& cell, std::vector<TrialResult> trials) {
+  apply_limit(cell, trials);
+  const std::array<int, 3> counted = row_counts(trials);
+  BlockCount block{.count = {.successes = counted[2], .trials = counted[0]}};
+  for (const TrialResult& trial : trials) {
     if (trial.status != localise::LocalisationStatus::failed) continue;
     if (block.failed++ == 0) block.why_failed = trial.failure;
   }
@@ -102,12 +103,13 @@ std::vector<SuccessAt> success_of_cells(const Study& study, const SuccessCurveOp
   const StudyWork work = study_work(study);
   UnitComputer computer(study, work);
   computer.prepare_maps();
-  const double success_error = study.file.cells[0].system.success_error;
   std::vector<BlockCount> of_block(work.blocks.size());
   std::mutex mutex;
   int done = 0;
   for_each_index(work.blocks.size(), options.threads, [&](std::size_t i) {
-    of_block[i] = counted(computer.trials(work.blocks[i]), success_error);
+    const BlockJob& job = work.blocks[i];
+    of_block[i] =
+        block_count(study.file.cells[static_cast<std::size_t>(job.cell)], computer.trials(job));
     const std::lock_guard lock(mutex);
     if (options.progress) options.progress(++done, static_cast<int>(of_block.size()));
   });
@@ -158,8 +160,8 @@ ScaleNeeded scale_needed(const std::vector<SuccessAt>& curve, double success) {
   const std::vector<double> rate = isotonic(curve);
   ScaleNeeded needed;
   needed.psi_c = std::max(0.0, last_above(curve, rate, success));
-  needed.low = std::max(0.0, last_above(curve, lower, success));
-  needed.high = last_above(curve, upper, success);
+  needed.low = std::clamp(last_above(curve, lower, success), 0.0, needed.psi_c);
+  needed.high = std::max(needed.psi_c, last_above(curve, upper, success));
   needed.beyond = rate.back() >= success;
   return needed;
 }
@@ -169,6 +171,7 @@ std::vector<LimitingCause> limiting_causes(Study study, const SuccessCurveOption
   const StudyCell now =
       with_source(study.file.cells[0], "calibration", &SourceSettings::calibration, 0);
   const ExperimentSettings& settings = now.experiment;
+  const SourceSettings& sources = settings.sources;
   const bool has_corners =
       now.system.is_localiser() && localise::needs_corners(settings.method, settings.localiser);
   std::vector<LimitingCause> causes;
@@ -176,11 +179,24 @@ std::vector<LimitingCause> limiting_causes(Study study, const SuccessCurveOption
   for (const SourceParameter& parameter : source_parameters()) {
     const bool of_corners = parameter.name.starts_with("corner");
     if (parameter.name == "calibration" || !parameter.is_switch ||
-        !(settings.sources.*parameter.value > 0) || (of_corners && !has_corners)) {
+        !(sources.*parameter.value > 0) || (of_corners && !has_corners)) {
       continue;
     }
     causes.push_back({std::string(parameter.name)});
     cells.push_back(with_source(now, parameter.name, parameter.value, 0));
+  }
+  for (std::size_t i = 0; i < sources.own.size(); ++i) {
+    causes.push_back({sources.own[i].name});
+    StudyCell& without = cells.emplace_back(now);
+    auto& own = without.experiment.sources.own;
+    own.erase(own.begin() + static_cast<std::ptrdiff_t>(i));
+    without.settings["sources.own"] += " without " + sources.own[i].name;  // another cell
+  }
+  if (!sources.command.empty()) {
+    causes.push_back({"command"});
+    StudyCell& without = cells.emplace_back(now);
+    without.experiment.sources.command.clear();
+    without.settings.erase("sources.command");
   }
   if (causes.empty()) return {};
   study.file.cells = std::move(cells);

@@ -47,7 +47,7 @@ ScaleNeeded scale_needed(const std::vector<SuccessAt>& curve, double success);
 
 /// What success without any calibration error would be if one cause were not there.
 struct LimitingCause {
-  std::string name;  ///< such as "lateral_shift_px"
+  std::string name;  ///< such as "lateral_shift_px"; of one's own its name, or "command"
   double success = 0;
 };
 

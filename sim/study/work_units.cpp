@@ -61,12 +61,10 @@ std::vector<WorkUnit> query_units(const MissingWork& missing) {
 UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std::stop_token& stop)
     : study_(study), work_(work), scenes_(study) {
   try_programs(stop);
-  for (std::size_t i = 0; i < study.file.cells.size(); ++i) {
-    const StudyCell& cell = study.file.cells[i];
+  for (const StudyCell& cell : study.file.cells) {
     if (!cell.system.is_localiser()) {
       if (stop.stop_requested()) return;
-      const auto place = static_cast<int>(i);
-      if (!system_kind(cell.system.name).is_program) give_back(place, lease(place));
+      if (!system_kind(cell.system.name).is_program) system(cell);
       continue;
     }
     StudyCell still = cell;
@@ -79,29 +77,27 @@ UnitComputer::UnitComputer(const Study& study, const StudyWork& work, const std:
 
 void UnitComputer::try_programs(const std::stop_token& stop) const {
   std::set<std::string> tried;
-  for (std::size_t i = 0; i < study_.file.cells.size(); ++i) {
-    const std::string command = study_.file.cells[i].system.command();
-    if (!command.empty() && tried.insert(command).second) try_program(static_cast<int>(i), stop);
+  for (const StudyCell& cell : study_.file.cells) {
+    const std::string command = cell.system.command();
+    if (!command.empty() && tried.insert(command).second) try_program(cell, stop);
   }
 }
 
-void UnitComputer::try_program(int cell, const std::stop_token& stop) const {
+void UnitComputer::try_program(const StudyCell& cell, const std::stop_token& stop) const {
   constexpr int most_failures = 3;
   constexpr std::uint32_t most_trials = 30;
-  Lease asked = lease(cell);
+  const Lease asked = system(cell);
   std::string why;
   int failures = 0;
   for (std::uint32_t trial = 0; trial < most_trials && failures < most_failures; ++trial) {
     if (stop.stop_requested()) return;
     const TrialResult result = asked->run(trial);
-    if (result.status != localise::LocalisationStatus::failed) {
-      return give_back(cell, std::move(asked));
-    }
+    if (result.status != localise::LocalisationStatus::failed) return;
     if (result.wall_ms == 0) continue;  // the program was not asked
     if (failures++ == 0) why = result.failure;
   }
   if (failures < most_failures) return;
-  const std::string command = study_.file.cells[static_cast<std::size_t>(cell)].system.command();
+  const std::string command = cell.system.command();
   const bool names_it = why.find(command) != std::string::npos;
   throw Error(place_of(study_.file, "system.command"),
               fmt::format("the program{} failed in the first {} trials: {}",

@@ -73,7 +73,7 @@ class UnitComputer {
   std::vector<TrialResult> trials_of_system(int cell, const TrialBlock& trials) const;
   /// Throws Error if a program fails in its first three trials, before hours are spent on it.
   void try_programs(const std::stop_token& stop) const;
-  void try_program(int cell, const std::stop_token& stop) const;
+  void try_program(const StudyCell& cell, const std::stop_token& stop) const;
   std::vector<std::pair<int, QueryCeiling>> queries(const WorkUnit& unit,
                                                     const std::stop_token& stop) const;
   /// Of the ceiling asked for last, kept.

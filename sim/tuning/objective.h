@@ -10,10 +10,10 @@ namespace vernier::sim::internal {
 
 /// What a race seeks most of: the mean of a score in [0, 1] of each trial.
 enum class Objective {
-  success,         ///< 1 for an answer within 1 m of the truth, else 0
+  success,         ///< 1 for an answer that errs by the cell's limit at most, else 0
   best_guess,      ///< the same where an unsure localiser's best guess counts too
   answered_right,  ///< 1 for a right answer, 1/2 for none, 0 for a wrong one
-  error,           ///< 1 - min(error, 1 m) / 1 m; 0 without an answer
+  error,           ///< 1 - min(error, limit) / limit; 0 without an answer
 };
 
 std::string_view name(Objective objective);

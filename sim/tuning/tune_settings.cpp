@@ -62,6 +62,7 @@ class TuneReader : private SettingsReader {
       settings.race.error_rate = number_in(*node, "tune.error_rate", 1e-6, 0.4);
     }
     if (const auto* node = table.get("conditions")) read_conditions(*node, settings);
+    refuse_searched_limits(root, settings);
     read_worlds(required(table, "confirm_worlds", "[tune]"), settings);
     read_seed(table, settings);
     settings.confirm_trials = study_.trials;
@@ -82,6 +83,15 @@ class TuneReader : private SettingsReader {
     const toml::table& own = *section(root, "study");
     if (const auto* node = own.get("interval_width")) {
       fail(*node, "a race decides itself how far a cell goes", "leave study.interval_width out");
+    }
+  }
+
+  /// The loosest limit would win.
+  void refuse_searched_limits(const toml::table& root, const TuneSettings& settings) const {
+    for (const std::string& key : study_.sweep_keys) {
+      if (!applies_on_reading(key) || is_condition(key, settings)) continue;
+      fail(*section(root, "sweep")->get(key), "a race over " + key + " is won by the loosest",
+           "set it in [system], or name it in tune.conditions");
     }
   }
 

@@ -12,7 +12,8 @@ const with_thresholds = (study) => study.cells.filter((cell) => cell.thresholds?
 export function reliability_section(study) {
   if (!with_reliability(study).length) return;
   const made = section("reliability", "Stated and observed errors", paragraph(
-    "The localiser states how probable it is that its answer is wrong. Answers are sorted by this"
+    "The localiser states how probable it is that its answer is wrong, further than 1 m from the"
+      + " truth. Answers are sorted by this"
       + " statement; where it is true, as many of them are wrong as it says."));
   const plots = [reliability_figure(study), threshold_figure(study)].filter(Boolean);
   if (plots.length) made.append(element("div", { class: "pair" }, plots));

@@ -157,7 +157,7 @@ function cell_columns(study) {
   const one_ceiling = new Set(study.cells.map((cell) => ceiling_of(study, cell))).size === 1;
   return [
     ...outcome_columns(),
-    { head: "Ceiling", small: "of the world", cell: (cell) =>
+    { head: "Ceiling", small: "of the world, 1 m", cell: (cell) =>
       one_ceiling ? DASH : percent(ceiling_of(study, cell)) },
     share_column("Coverage", "coverage"),
     share_column("Success", "success_when_answered", "of answered"),

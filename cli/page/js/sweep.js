@@ -64,7 +64,7 @@ export const success_of = (study) => ({
 function success_figure(study, label) {
   const ceilings = study.cells.map((cell) => ceiling_of(study, cell)).filter(is_number);
   const ceiling = ceilings.length ? " Dashed line: ceiling of the world, the most that"
-    + " one look at lines allows." : "";
+    + " one look at lines allows, within 1 m." : "";
   return figure("Success", `${spread_words(study, SUCCESS)} Dots: success rate of`
     + ` a cell; bars: 95 % intervals.${ceiling}`,
     `Success rate with 95 per cent intervals against ${label}; values are in the table of`

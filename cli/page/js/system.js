@@ -80,7 +80,6 @@ export function system_cells_section(study) {
   made.append(...failures_tables(study), ...measured_tables(study));
 }
 
-
 function cell_columns(study) {
   const { write } = error_of(study);
   const error = (key, small) => ({ head: "Error", small, cell: (cell) => write(cell[key]) });

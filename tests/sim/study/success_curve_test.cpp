@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/study/study.h"
 #include "sim/systems/systems.h"
+#include "sim/uncertainty_source.h"
 #include "tests/sim/study/stored_example.h"
 #include "tests/support/example_study.h"
 
@@ -107,6 +110,29 @@ TEST(SuccessCurve, TheCauseThatLimitsMostComesFirst) {
   }
 }
 
+TEST(SuccessCurve, TheScalesLimitsHoldIt) {
+  // A lower limit may be met where the pooled rate is not.
+  const std::vector<SuccessAt> rising{{0, 0.5, {0.3, 0.7}}, {1, 0.9, {0.8, 0.96}}};
+  const ScaleNeeded needed = scale_needed(rising, 0.75);
+  EXPECT_LE(needed.low, needed.psi_c);
+  EXPECT_GE(needed.high, needed.psi_c);
+}
+
+/// All edges are lost to a source of one's own: without it all is well.
+TEST(SuccessCurve, ASourceOfOnesOwnMayBeTheCause) {
+  class Thief : public UncertaintySource {
+   public:
+    std::string_view name() const override { return "thief"; }
+    void apply(const SensingContext&, SensedView& view) const override { view.edges.clear(); }
+  };
+  register_source("thief", [](const SourceOptions&) { return std::make_unique<Thief>(); });
+  const Study study =
+      test::office_study("[study]\ntrials = 12\n" + office + "[sources]\nown = [\"thief\"]\n");
+  const std::vector<LimitingCause> causes = limiting_causes(study, {.psi_c = {0}, .threads = 2});
+  EXPECT_EQ(causes[0].name, "thief");
+  EXPECT_GT(causes[0].success, causes[1].success + 0.3);
+}
+
 /// A source of error that does not act on a system does not limit it.
 TEST(SuccessCurve, OnlySourcesThatActAreCauses) {
   register_systems();
@@ -114,6 +140,10 @@ TEST(SuccessCurve, OnlySourcesThatActAreCauses) {
       "[study]\ntrials = 12\n[system]\nname = \"program\"\ncommand = \"none\"\nsuccess_error = "
       "1\n");
   EXPECT_TRUE(limiting_causes(study).empty());
+  const Study servo = test::office_study("[study]\ntrials = 6\n[system]\nname = \"servoing\"\n");
+  for (const LimitingCause& cause : limiting_causes(servo, {.threads = 2})) {
+    EXPECT_FALSE(cause.name.starts_with("corner")) << cause.name;
+  }
 }
 
 }  // namespace

@@ -128,6 +128,12 @@ TEST(TuneSettings, RefusesWhatCannotBeRacedOrConfirmed) {
   EXPECT_NE(refusal("[tune]\n" + ok, "[study]\n[sweep]\n\"world.file\" = [\"a\", \"b\"]\n")
                 .find("nothing to race"),
             std::string::npos);
+  const std::string limits =
+      "[study]\n[sweep]\n\"system.success_error\" = [0.1, 1]\n"
+      "\"map.spacing_m\" = [1, 2]\n";
+  EXPECT_NE(refusal("[tune]\n" + ok, limits).find("t.toml:3: a race over system.success_error is"),
+            std::string::npos);
+  EXPECT_EQ(refusal("[tune]\nconditions = [\"system.success_error\"]\n" + ok, limits), "");
   EXPECT_NE(refusal("[tune]\n" + ok, "[study]\n").find("nothing to race"), std::string::npos);
   EXPECT_NE(refusal("[tune]\n" + ok, "[study]\ninterval_width = 0.05\n").find("interval_width"),
             std::string::npos);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"

@@ -19,6 +19,7 @@
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
+#include "sim/study/system_reader.h"
 
 namespace vernier::sim::internal {
 

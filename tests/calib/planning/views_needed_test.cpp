@@ -99,9 +99,10 @@ TEST(ViewsNeeded, AnUncertainTargetWidensTheIntervalByItsSquare) {
   EXPECT_NEAR(below.interval.high, 100 * std::exp(2 * 1.96 * 0.05), 2);
   // With the noise of the views together: by the square root of the sum of squares.
   const ViewsNeeded both =
-      views_needed(counting(1, 1, 0.08), counted, 1, target,
-                   {.sequences = 4000, .target_log_sd_below = 0.06, .target_log_sd_above = 0.06});
-  EXPECT_NEAR(both.interval.high, 100 * std::exp(2 * 1.96 * 0.1), 4);
+      views_needed(counting(1, 1, 0.04), counted, 1, target,
+                   {.sequences = 4000, .target_log_sd_below = 0.03, .target_log_sd_above = 0.03});
+  EXPECT_NEAR(both.interval.high, 100 * std::exp(2 * 1.96 * 0.05), 3);
+  EXPECT_NEAR(both.interval.low, 100 * std::exp(-2 * 1.96 * 0.05), 3);
 }
 
 TEST(ViewsNeeded, TheStandardDeviationNowIsThatOfTheViewsTaken) {

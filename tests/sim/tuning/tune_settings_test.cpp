@@ -129,9 +129,9 @@ TEST(TuneSettings, RefusesWhatCannotBeRacedOrConfirmed) {
                 .find("nothing to race"),
             std::string::npos);
   const std::string limits =
-      "[study]\n[sweep]\n\"system.success_error\" = [0.1, 1]\n"
+      "[study]\n[system]\nname = \"localiser\"\n[sweep]\n\"system.success_error\" = [0.1, 1]\n"
       "\"map.spacing_m\" = [1, 2]\n";
-  EXPECT_NE(refusal("[tune]\n" + ok, limits).find("t.toml:3: a race over system.success_error is"),
+  EXPECT_NE(refusal("[tune]\n" + ok, limits).find("t.toml:5: a race over system.success_error is"),
             std::string::npos);
   EXPECT_EQ(refusal("[tune]\nconditions = [\"system.success_error\"]\n" + ok, limits), "");
   EXPECT_NE(refusal("[tune]\n" + ok, "[study]\n").find("nothing to race"), std::string::npos);

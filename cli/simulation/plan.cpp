@@ -19,6 +19,7 @@
 #include "calib/base/text_lines.h"
 #include "calib/board_target.h"
 #include "calib/calibration/solve_again.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/rig_part.h"
 #include "calib/planning/views_needed.h"
@@ -28,6 +29,7 @@
 #include "calib/simulated_board.h"
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/target_quantity.h"
 #include "cli/program/chosen_cameras.h"
 #include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
@@ -120,6 +122,7 @@ void know(const PlanArguments& o,
   const std::string chosen = o.cameras.empty() ? "" : ", for the cameras " + o.cameras;
   const bool has_views = rig.evidence && !rig.evidence->observations.views.empty();
   plan.from_calibration = has_views && o.board.empty();
+  plan.leaves_views_out = has_views && !o.board.empty();
   if (plan.from_calibration) {
     plan.known =
         with_errors_of(name, [&] { return knowledge_of(without_effects(rig), o.seed, name); });
@@ -228,6 +231,10 @@ void run(const PlanArguments& o, Session& session) {
     }
     if (plan.known.taken > 0) numbers.insert(numbers.begin(), plan.known.taken);
     plan.curve = sd_after(plan.known, what, plan.target.at_m, numbers, how);
+    if (plan.from_calibration && o.cameras.empty() && file.estimate.covariance) {
+      plan.stated_sd = sd_of(target_quantity(file.estimate.rig, what, plan.target.at_m),
+                             ScaledDecomposition(*file.estimate.covariance).factor());
+    }
     return 0;
   });
   if (o.board.empty()) warn_of_lost_views(file.estimate, name, session);
@@ -258,7 +265,12 @@ void add_plan(CLI::App& app, Session& session) {
                    "wanted standard deviation of the projection, pixels, as 0.5 or 0.5@2m");
   verb->add_option("--success,--target-success", o->success,
                    "wanted success rate of localisation, or of what --study tries")
-      ->check(CLI::Range(1e-3, 0.9999));
+      ->check([](const std::string& text) {
+        const double rate = to_finite(text).value_or(0);
+        return rate >= 1e-3 && rate <= 0.9999
+                   ? std::string()
+                   : in_quotes(text) + " is not from 0.001 to 0.9999, such as 0.95 for 95 %";
+      });
   verb->add_option("--at-m", o->at_m, "distance, metres")
       ->check(finite_and_positive)
       ->capture_default_str();

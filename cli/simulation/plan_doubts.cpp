@@ -39,6 +39,26 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
   constexpr double unsure_below = 0.8;  // confidence of an interval of a factor of two
   constexpr double correlated = 1.5;
   constexpr int few = 13;
+  constexpr double shared = 1.25, mostly_shared = 1.5;  // stated over planned, with views so far
+  if (plan.leaves_views_out) {
+    session.warn(
+        "the calibration's own views do not count, as --board makes it a datasheet: leave --board "
+        "out to plan from them");
+  }
+  const double more = plan.curve.empty() ? 1 : plan.stated_sd / plan.curve[0].sd;
+  if (more > shared) {
+    const std::string text = fmt::format(
+        "by the calibration's covariance the standard deviation is now {:.3g} {}, {:.2g} times "
+        "what "
+        "the noise of its views leaves: the rest may be of all views (a lens model that does not "
+        "fit, the board), which more of them do not reduce; check the calibration",
+        plan.stated_sd, plan.target.quantity == "projection" ? "px" : "m", more);
+    if (more > mostly_shared) {
+      session.add_trust_warning(text);
+    } else {
+      session.warn(text);
+    }
+  }
   if (plan.from_calibration && plan.known.taken < few && plan.known.inflation > correlated) {
     session.warn(fmt::format(
         "the residuals are correlated over the board, and {} views understate that: on real images "

@@ -34,9 +34,11 @@ std::string successes_text(const PlanResult& plan) {
       fmt::format("\n{:>22} {:>9} {:>17}\n", "calibration error", "success", "95 % interval");
   for (const SuccessAt& at : plan.successes) {
     text +=
-        fmt::format("{:>15} times {:>9} [{:>6.1f}, {:>6.1f}]\n", at.psi_c, in_percent(at.success),
-                    100 * at.interval_95.low, 100 * at.interval_95.high);
+        fmt::format("{:>15.3g} times {:>9} [{:>6.1f}, {:>6.1f}]\n", at.psi_c,
+                    in_percent(at.success), 100 * at.interval_95.low, 100 * at.interval_95.high);
   }
+  text += fmt::format("1 times: a standard deviation of the depth at {:g} m of {:.3g} m\n",
+                      plan.target.at_m, plan.reference_sd_m);
   if (plan.scale && plan.scale->beyond) {
     text += "met at the largest error that was tried: fewer views may suffice\n";
   }
@@ -119,6 +121,7 @@ Json plan_json(const PlanResult& plan) {
             {"views_by_all_confidence",
              plan.needed_by_all ? Json(plan.needed_by_all->confidence) : Json()},
             {"confidence", plan.needed ? Json(plan.needed->confidence) : Json()},
+            {"stated_sd", json_number(plan.stated_sd)},
             {"sd_allowed", plan.sd_allowed ? Json(*plan.sd_allowed) : Json()},
             {"pixel_noise_sd_m", json_number(plan.pixel_noise_sd)},
             {"pair_sigma_px", plan.pair_sigma_px},

@@ -27,6 +27,7 @@ struct PlanResult {
   PlanTarget target;
   std::string basis;  ///< in words: the calibration or datasheet
   bool from_calibration = false;
+  bool leaves_views_out = false;  ///< a calibration's, because a board was given
   ViewKnowledge known;
   /// Part of the target that calibration may have, of a standard deviation; for success that of
   /// the depth at which the rate is met. Empty if the rest alone exceeds the target.
@@ -40,6 +41,9 @@ struct PlanResult {
   std::vector<SdAfter> curve;
   std::vector<SuccessAt> successes;  ///< of a success rate
   std::optional<ScaleNeeded> scale;
+  double reference_sd_m = 0;  ///< of the depth at once the error that `successes` scale
+  /// By the calibration's own covariance, of the quantity of `curve`; not a number if not known.
+  double stated_sd = std::numeric_limits<double>::quiet_NaN();
   std::vector<LimitingCause> causes;  ///< if no calibration is good enough
   std::string limit;                  ///< why it cannot be reached, and what limits; else empty
 

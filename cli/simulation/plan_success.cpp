@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "calib/base/decompositions.h"
+#include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/planning/views_needed.h"
@@ -152,12 +154,18 @@ void add_success_options(CLI::App& verb, SuccessTrials& trials) {
   verb.add_option("--method", trials.method, "localiser of --success")->capture_default_str();
   verb.add_option("--within-m", trials.within_m,
                   "a localiser's answer is right up to this distance from the truth, metres")
-      ->check(finite_and_positive)
-      ->check(CLI::Range(0.0, success_radius_m))
+      ->check([](const std::string& text) {
+        const std::string fault = finite_and_positive(text);
+        if (!fault.empty() || to_finite(text).value_or(0) <= success_radius_m) return fault;
+        return in_quotes(text) +
+               fmt::format(" is above {:g}: an answer further away is another place",
+                           success_radius_m);
+      })
       ->capture_default_str();
   verb.add_option(
           "--trials", trials.trials,
-          "trials at each of six scales of the calibration's error (of --study: as it says)")
+          "trials at each scale of the calibration's error, of which there are six and those "
+          "that close in on the target (--study: as many as it says, unless given)")
       ->check(CLI::Range(12, 100'000))
       ->capture_default_str();
   verb.add_option("--threads", trials.threads, "number of threads (0: all)")
@@ -201,7 +209,8 @@ void allow_for_success(Study study, int threads, PlanResult& plan, Session& sess
                                     progress.emplace(session, "plan: blocks of trials");
                                   progress->update(done, total);
                                 }};
-  plan.successes = success_curve(study, how);
+  plan.reference_sd_m = reference_sd;
+  plan.successes = success_curve_about(study, plan.target.value, how);
   progress.reset();
   tell_failed(plan.successes, study.file.trials, session);
   plan.scale = scale_needed(plan.successes, plan.target.value);

@@ -52,7 +52,9 @@ StoredResults read_parts(const std::vector<fs::path>& parts,
     if (!why.empty()) {
       throw Error(part.string(),
                   "is not part of the same study as " + parts[0].string() + ": " + why,
-                  "merge only parts of one study");
+                  why.find("success_error") == std::string::npos
+                      ? "merge only parts of one study"
+                      : "run one again with the other's limit, which takes no trials");
     }
     all.add_folder(part);
     all.require_all_read();

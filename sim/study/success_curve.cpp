@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -144,6 +147,37 @@ std::vector<SuccessAt> success_curve(Study study, const SuccessCurveOptions& opt
   }
   study.file.cells = std::move(cells);
   return success_of_cells(study, options);
+}
+
+std::vector<SuccessAt> success_curve_about(const Study& study,
+                                           double success,
+                                           const SuccessCurveOptions& options) {
+  constexpr int most_rounds = 8;
+  std::vector<SuccessAt> curve = success_curve(study, options);
+  for (int round = 0; round < most_rounds; ++round) {
+    SuccessCurveOptions between = options;
+    between.psi_c = scales_between(curve, success);
+    if (between.psi_c.empty()) break;
+    for (SuccessAt& at : success_curve(study, between)) curve.push_back(std::move(at));
+    std::sort(curve.begin(), curve.end(),
+              [](const SuccessAt& a, const SuccessAt& b) { return a.psi_c < b.psi_c; });
+  }
+  return curve;
+}
+
+std::vector<double> scales_between(const std::vector<SuccessAt>& curve, double success) {
+  constexpr double close = 1.25, smallest = 1.0 / 64;
+  const ScaleNeeded needed = scale_needed(curve, success);
+  std::set<double> between;
+  for (const double crossing : {needed.low, needed.psi_c, needed.high}) {
+    const auto above = std::find_if(curve.begin(), curve.end(),
+                                    [&](const SuccessAt& at) { return at.psi_c > crossing; });
+    if (!(crossing > 0) || above == curve.begin() || above == curve.end()) continue;
+    const double low = std::prev(above)->psi_c, high = above->psi_c;
+    if (low == 0 && high > smallest) between.insert(high / 2);
+    if (low > 0 && high > close * low) between.insert(std::sqrt(low * high));
+  }
+  return {between.begin(), between.end()};
 }
 
 ScaleNeeded scale_needed(const std::vector<SuccessAt>& curve, double success) {

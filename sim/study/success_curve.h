@@ -33,6 +33,17 @@ struct SuccessCurveOptions {
 /// threads. Throws Error as run_study.
 std::vector<SuccessAt> success_curve(Study study, const SuccessCurveOptions& options = {});
 
+/// The same with further scales (scales_between), until a rate is met, and its interval's limits
+/// are, between two that are a quarter apart at most.
+std::vector<SuccessAt> success_curve_about(const Study& study,
+                                           double success,
+                                           const SuccessCurveOptions& options = {});
+
+/// Where to look next for the scale at which a rate, or a limit of its interval, is met: the
+/// geometric mean of the scales beside it, half of the smallest where it is below that (down to
+/// 1/64); ascending. Empty where these are a quarter apart, and where the curve does not meet it.
+std::vector<double> scales_between(const std::vector<SuccessAt>& curve, double success);
+
 /// The scale at which a success rate is met, of a rate that falls with the scale.
 struct ScaleNeeded {
   double psi_c = 0;          ///< 0 if not even no error meets it

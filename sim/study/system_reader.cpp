@@ -65,6 +65,7 @@ const SystemKind& SystemReader::kind_of(const toml::table& root) const {
   const toml::node* section = root.get("system");
   if (!section) return system_kind("localiser");
   const toml::table& system = table(*section, "[system]");
+  if (system.size() == 1 && system.contains("success_error")) return system_kind("localiser");
   const toml::node& node = required(system, "name", "[system]");
   const std::string name = text(node, "system.name");
   const std::vector<std::string> known = system_names();

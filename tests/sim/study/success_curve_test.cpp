@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -116,6 +117,32 @@ TEST(SuccessCurve, TheScalesLimitsHoldIt) {
   const ScaleNeeded needed = scale_needed(rising, 0.75);
   EXPECT_LE(needed.low, needed.psi_c);
   EXPECT_GE(needed.high, needed.psi_c);
+}
+
+/// Normal errors of standard deviation psi_c succeed below 0.2: further scales find where so many
+/// do.
+TEST(SuccessCurve, FurtherScalesCloseInOnWhereARateIsMet) {
+  const auto at = [](double psi_c) {
+    const double rate = psi_c > 0 ? std::erf(0.2 / (psi_c * std::sqrt(2.0))) : 1;
+    return SuccessAt{psi_c, rate, {std::max(0.0, rate - 0.02), std::min(1.0, rate + 0.02)}};
+  };
+  for (const double success : {0.1, 0.5, 0.9, 0.97}) {
+    std::vector<SuccessAt> curve;
+    for (const double psi_c : SuccessCurveOptions{}.psi_c) curve.push_back(at(psi_c));
+    int rounds = 0;
+    for (std::vector<double> more = scales_between(curve, success); !more.empty() && rounds < 9;
+         more = scales_between(curve, success), ++rounds) {
+      EXPECT_LE(more.size(), 3u);
+      for (const double psi_c : more) curve.push_back(at(psi_c));
+      std::sort(curve.begin(), curve.end(),
+                [](const SuccessAt& a, const SuccessAt& b) { return a.psi_c < b.psi_c; });
+    }
+    EXPECT_LT(rounds, 8);
+    const double found = scale_needed(curve, success).psi_c;
+    EXPECT_NEAR(at(found).success, success, 0.004) << success;
+  }
+  EXPECT_TRUE(scales_between({{0, 0.9, {0.8, 0.95}}, {1, 0.5, {0.4, 0.6}}}, 0.97).empty());
+  EXPECT_TRUE(scales_between({{0, 1, {0.9, 1}}, {1, 1, {0.9, 1}}}, 0.8).empty());
 }
 
 /// All edges are lost to a source of one's own: without it all is well.

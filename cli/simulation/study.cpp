@@ -47,6 +47,7 @@ struct StudyArguments {
 void print(const Study& study, const fs::path& folder, Session& session) {
   const StudyResults results = study_results(study, folder, 0);
   tell_failed_trials(results, session);
+  tell_shared_views(study, session);
   tell_failed_calibrations(results, session);
   tell_understated_errors(results, session);
   tell_changed_programs(results, session);

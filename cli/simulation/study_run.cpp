@@ -6,9 +6,11 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "calib/board_observations.h"
 #include "calib/interval.h"
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
@@ -16,6 +18,7 @@
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
+#include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
 #include "sim/told/fresh_calibrations.h"
 
@@ -183,6 +186,21 @@ void tell_failed_calibrations(const StudyResults& results, Session& session) {
           fmt::format("cell \"{}\": {} of {} calibrations are doubtful, the first by: {}",
                       cell.cell.label, record->doubtful, used, record->why_doubtful));
     }
+  }
+}
+
+void tell_shared_views(const Study& study, Session& session) {
+  if (!study.corners) return;
+  const auto frames = static_cast<int>(frames_of(*study.corners).size());
+  std::set<int> told;
+  for (const StudyCell& cell : study.file.cells) {
+    if (!cell.told.calibration) continue;
+    const int views = cell.told.calibration->views;
+    if (2 * views <= frames || !told.insert(views).second) continue;
+    session.add_trust_warning(fmt::format(
+        "calibrations from {} of the same {} frames share most of them: their error, against a rig "
+        "calibrated from all of them, is about {:.2f} times that of fresh views; take at most half",
+        views, frames, std::sqrt(1 - static_cast<double>(views) / frames)));
   }
 }
 

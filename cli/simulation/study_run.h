@@ -22,6 +22,10 @@ void run_in_folder(const FolderClaim& claim,
 /// calibration has.
 void tell_failed_trials(const StudyResults& results, Session& session);
 
+/// Doubts cells whose calibrations share most of their real views with one another, and with the
+/// true rig where it is of all of them: they err by less than fresh ones.
+void tell_shared_views(const Study& study, Session& session);
+
 /// Says in which cells more answers are wrong than the localiser states, by more than chance: at
 /// least twice as many at 98 % confidence.
 void tell_understated_errors(const StudyResults& results, Session& session);

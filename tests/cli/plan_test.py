@@ -328,7 +328,10 @@ class ToldRigs(Base):
         nominal = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
         (self.folder / 'all.json').write_text(json.dumps(nominal))
         ran = self.study('[rig]\nfile = "all.json"\n[calibration]\nobservations = "all.json"\n'
-                         '[sweep]\n"calibration.views" = [4, 20]\n')
+                         '[sweep]\n"calibration.views" = [4, 20]\n', code=3)
+        self.assertIn('calibrations from 20 of the same 20 frames share most of them: their error',
+                      ran['doubts'][0])
+        self.assertIn('about 0.00 times that of fresh views', ran['doubts'][0])
         few, whole = (cell['calibration'] for cell in ran['cells'])
         self.assertEqual(whole['calibrations'], 100)
         self.assertGreater(few['depth_error_m'], 10 * whole['depth_error_m'])  # all views: the truth

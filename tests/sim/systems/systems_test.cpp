@@ -21,6 +21,7 @@
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/robot.h"
+#include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"

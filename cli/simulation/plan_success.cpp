@@ -144,9 +144,11 @@ void tell_failed(const std::vector<SuccessAt>& successes, int trials, Session& s
 }  // namespace
 
 void add_success_options(CLI::App& verb, SuccessTrials& trials) {
-  verb.add_option("--study", trials.study,
-                  "study file whose trials are to succeed, of any system, instead of the options "
-                  "that follow; the rig is the one that is planned for, its own if none is given");
+  verb.add_option(
+      "--study", trials.study,
+      "study file whose trials are to succeed, of any system, in place of --world, "
+      "--protocol, --method and --within-m; the rig is the one that is planned for, its "
+      "own if none is given");
   verb.add_option("--world", trials.world, "world of --success, a shipped name or a file")
       ->capture_default_str();
   verb.add_option("--protocol", trials.protocol, "near_path, path, anywhere or free")

@@ -40,6 +40,17 @@ TEST(SystemReader, AStudyWithoutItTriesLocalisers) {
   }
 }
 
+TEST(SystemReader, ALimitAloneIsALocalisers) {
+  register_systems();
+  const StudyFile study = parse_study("[study]\n[system]\nsuccess_error = 0.3\n", "s.toml");
+  EXPECT_TRUE(study.cells[0].system.is_localiser());
+  EXPECT_EQ(study.cells[0].system.success_error, 0.3);
+  const StudyFile swept =
+      parse_study("[study]\n[sweep]\n\"system.success_error\" = [0.1, 1]\n", "s.toml");
+  EXPECT_EQ(swept.cells[1].settings.at("system.success_error"), "1");
+  expect_complaint("[system]\nsuccess_error = 0.3\nrange_m = 4\n", "'name'");
+}
+
 TEST(SystemReader, HasTheSettingsOfItsKindOnly) {
   register_systems();
   const StudyFile study = parse_study(

@@ -43,6 +43,8 @@
 namespace vernier::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// The covariance after the views so far, or after ten of a datasheet's.
 Covariance reference_covariance(const ViewKnowledge& known) {
   const ViewPool& pool = known.pools[0];
@@ -185,8 +187,9 @@ Study study_of(const SuccessTrials& trials,
   } else {
     refuse_options(app, std::array{"--world", "--protocol", "--method", "--within-m"},
                    "the study says it");
-    check_can_be_planned(read_study(trials.study));
-    study = load_study_without_rig(trials.study, session);
+    const StudyFile file = read_study(trials.study);
+    check_can_be_planned(file);
+    study = load_inputs_without_rig(file, fs::path(trials.study).parent_path(), session);
   }
   if (trials.study.empty() || app.count("--trials") > 0) {
     const bool shares_maps = study.file.cells[0].system.is_localiser();

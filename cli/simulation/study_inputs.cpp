@@ -203,15 +203,12 @@ Study assemble(StudyFile file, Session& session, FileOf file_of_input, WithRig w
   return study;
 }
 
-/// The study of a text, its inputs beside it.
-Study assemble_beside(const std::string& text,
-                      const fs::path& place,
+/// The study of a file, its inputs in the folder `beside`.
+Study assemble_beside(const StudyFile& study,
+                      const fs::path& beside,
                       Session& session,
                       WithRig with_rig) {
-  const StudyFile study = parse_study(text, place.string());
-  const auto file = [&](const StudyInput& input) {
-    return file_of(input, study, place.parent_path());
-  };
+  const auto file = [&](const StudyInput& input) { return file_of(input, study, beside); };
   return assemble(study, session, file, with_rig);
 }
 
@@ -257,13 +254,14 @@ Study load_study(const fs::path& file, Session& session) {
 }
 
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
-  Study study = assemble_beside(text, place, session, WithRig::yes);
+  Study study = assemble_beside(parse_study(text, place.string()), place.parent_path(), session,
+                                WithRig::yes);
   check_covariances(study);
   return study;
 }
 
-Study load_study_without_rig(const fs::path& file, Session& session) {
-  return assemble_beside(read_whole(file), file, session, WithRig::no);
+Study load_inputs_without_rig(const StudyFile& study, const fs::path& beside, Session& session) {
+  return assemble_beside(study, beside, session, WithRig::no);
 }
 
 Study open_folder(const fs::path& folder, Session& session) {

@@ -9,6 +9,7 @@
 
 #include "cli/program/session.h"
 #include "sim/study/study.h"
+#include "sim/study/study_file.h"
 
 namespace vernier::cli {
 
@@ -37,8 +38,11 @@ Study load_study(const std::filesystem::path& file, Session& session);
 /// The same of a text, as above.
 Study load_study(const std::string& text, const std::filesystem::path& place, Session& session);
 
-/// The same without its true rig, for a caller that gives it one.
-Study load_study_without_rig(const std::filesystem::path& file, Session& session);
+/// A study with its inputs (of the folder `beside`) but for its true rig, for a caller that gives
+/// it one.
+Study load_inputs_without_rig(const StudyFile& study,
+                              const std::filesystem::path& beside,
+                              Session& session);
 
 /// The study of a results folder, by its own copies of the inputs, so that it can be moved.
 Study open_folder(const std::filesystem::path& folder, Session& session);

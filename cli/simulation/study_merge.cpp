@@ -47,14 +47,14 @@ StoredResults read_parts(const std::vector<fs::path>& parts,
     const Study study = open_folder(part, session);
     std::string why = study_difference(study, first);
     if (why.empty()) why = study_difference(first, study);
+    const bool is_limit = why.empty();
     if (why.empty()) why = limit_difference(study, first);
     if (why.empty()) why = limit_difference(first, study);
     if (!why.empty()) {
       throw Error(part.string(),
                   "is not part of the same study as " + parts[0].string() + ": " + why,
-                  why.find("success_error") == std::string::npos
-                      ? "merge only parts of one study"
-                      : "run one again with the other's limit, which takes no trials");
+                  is_limit ? "run one again with the other's limit, which takes no trials"
+                           : "merge only parts of one study");
     }
     all.add_folder(part);
     all.require_all_read();

@@ -89,12 +89,6 @@ std::vector<TrialResult> wanted_trials(StoredBlock block,
 
 enum class Figures { made, left_out };
 
-ClusterCount count_of(const std::vector<TrialResult>& trials) {
-  const auto successes =
-      std::count_if(trials.begin(), trials.end(), [](const TrialResult& t) { return t.success(); });
-  return {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())};
-}
-
 /// The keys of stored cells by what is left of them without the files of programs: of several the
 /// one that has most blocks.
 std::map<std::string, std::string> without_programs(

@@ -82,10 +82,10 @@ std::vector<ClusterCount> first_counts(const StudyCell& cell,
   for (int from = 0; from < all; from += at_a_time) {
     const int end = std::min(from + at_a_time, all);
     for (const StoredBlock& block : blocks_of(cell, {key, from, end}, stored)) {
-      const std::array<int, 3> counted = row_counts(block.trials);
+      const ClusterCount count = count_of(block.trials);
       const auto place = static_cast<std::size_t>(block.block);
-      if (place != first.size() || counted[0] < jobs[place].count) return first;
-      first.push_back({.successes = counted[2], .trials = counted[0]});
+      if (place != first.size() || count.trials < jobs[place].count) return first;
+      first.push_back(count);
     }
     if (static_cast<int>(first.size()) < end) return first;
   }
@@ -115,6 +115,11 @@ bool has_limit_of_rows(const SystemSettings& system) {
 
 void apply_limit(const StudyCell& cell, std::vector<TrialResult>& trials) {
   for (TrialResult& trial : trials) trial.limit = cell.system.success_error;
+}
+
+ClusterCount count_of(const std::vector<TrialResult>& trials) {
+  const std::array<int, 3> counted = row_counts(trials);
+  return {.successes = counted[2], .trials = counted[0]};
 }
 
 std::vector<StoredBlock> blocks_of(const StudyCell& cell,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/budget.h"
 #include "sim/study/stored_results.h"
@@ -47,6 +48,9 @@ std::string work_fingerprint(const StudyWork& work);
 
 /// Makes trials succeed by the limit of their cell.
 void apply_limit(const StudyCell& cell, std::vector<TrialResult>& trials);
+
+/// How many of some trials succeed.
+ClusterCount count_of(const std::vector<TrialResult>& trials);
 
 /// The stored blocks of a range of a cell, their successes by the cell's limit: a row counts by
 /// that of the study that made it.

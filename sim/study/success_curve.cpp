@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -23,7 +22,6 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
-#include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
@@ -92,8 +90,7 @@ struct BlockCount {
 
 BlockCount block_count(const StudyCell& cell, std::vector<TrialResult> trials) {
   apply_limit(cell, trials);
-  const std::array<int, 3> counted = row_counts(trials);
-  BlockCount block{.count = {.successes = counted[2], .trials = counted[0]}};
+  BlockCount block{.count = count_of(trials)};
   for (const TrialResult& trial : trials) {
     if (trial.status != localise::LocalisationStatus::failed) continue;
     if (block.failed++ == 0) block.why_failed = trial.failure;

@@ -67,7 +67,8 @@ export const at_words = (cell) => cell.label === "as set" ? "the settings of the
 
 function headline_words(study, cell) {
   const words = [`In ${counted(cell.trials, "trial")}, the robot localised itself within`
-    + ` ${radius_words(cell)} of its true position ${percent(cell.success)} of the time.`, interval_words(cell)];
+    + ` ${radius_words(cell)} of its true position ${percent(cell.success)} of the time.`,
+  interval_words(cell)];
   const clustered = cell.success_interval_95 && cell.success_interval_binomial_95;
   const notes = ["Unanswered queries count as failures; heading is not evaluated."];
   if (clustered) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ Study limited_study(const std::string& text) {
   return test::office_study(text);
 }
 
+/// How many blocks a run in the folder has left to compute; -1 if it does not say.
+int blocks_computed(const Study& study, const std::filesystem::path& folder) {
+  int asked = -1;
+  StudyRun run{folder, 2, {}, {}, {}};
+  run.progress = [&](int, int total) { asked = total; };
+  run_study(study, run);
+  return asked;
+}
+
 const std::string of_calibrations =
     "[study]\ntrials = 36\nseed = 3\n[system]\nname = \"calibration\"\nrange_m = 4\n"
     "success_error = 0.05\n[calibration]\npixel_sigma_px = 0.3\n[sweep]\n"
@@ -49,11 +59,7 @@ TEST(SuccessLimits, AnotherLimitNeedsNoNewTrials) {
   for (const std::string limit : {"0.01", "0.02"}) {
     const Study strict = with_limit(of_calibrations, limit);
     EXPECT_EQ(study_difference(loose, strict), "");
-    int asked = -1;
-    StudyRun run{folder / "a", 2, {}, {}, {}};
-    run.progress = [&](int, int total) { asked = total; };
-    run_study(strict, run);
-    EXPECT_EQ(asked, 0);
+    EXPECT_EQ(blocks_computed(strict, folder / "a"), 0);
     const StudyResults after = study_results(strict, folder / "a");
     for (std::size_t c = 0; c < after.cells.size(); ++c) {
       const std::vector<TrialResult>& trials = before.cells[c].trials;
@@ -83,11 +89,7 @@ TEST(SuccessLimits, ALocalisersLimitNeedsNoNewTrials) {
   for (const std::string limit : {"1", "0.1", "0.03"}) {
     const Study strict = within(limit);
     EXPECT_EQ(study_difference(usual, strict), "");
-    int asked = -1;
-    StudyRun run{folder / "a", 2, {}, {}, {}};
-    run.progress = [&](int, int total) { asked = total; };
-    run_study(strict, run);
-    EXPECT_EQ(asked, 0);
+    EXPECT_EQ(blocks_computed(strict, folder / "a"), 0);
     const CellResult after = study_results(strict, folder / "a").cells[0];
     const auto right = std::count_if(
         before.trials.begin(), before.trials.end(),

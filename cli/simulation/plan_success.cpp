@@ -93,7 +93,9 @@ void check_can_be_planned(const StudyFile& study) {
 
 /// The study of a localiser that the options describe.
 Study study_of_localiser(const SuccessTrials& trials, std::uint64_t seed) {
-  StudyCell cell{.label = "plan", .world = trials.world};
+  StudyCell cell;
+  cell.label = "plan";
+  cell.world = trials.world;
   cell.experiment.protocol = query_protocol(trials.protocol);
   cell.experiment.method = trials.method;
   cell.experiment.seed = seed;
@@ -207,7 +209,9 @@ void allow_for_success(Study study, int threads, PlanResult& plan, Session& sess
   const double reference_sd = sd_of(depth, ScaledDecomposition(covariance).factor());
   plan.target.condition = condition_text(study.file);
   plan.target.success_error = study.file.cells[0].system.success_error;
-  study.rig = {.rig = rig, .covariance = covariance};
+  study.rig = RigEstimate();
+  study.rig.rig = rig;
+  study.rig.covariance = covariance;
   std::optional<Progress> progress;
   const SuccessCurveOptions how{.threads = threads, .progress = [&](int done, int total) {
                                   if (!progress)

@@ -197,12 +197,12 @@ void characterise_sequence(const SequenceArguments& options,
                            const std::string& output,
                            std::uint64_t seed,
                            Session& session) {
-  const auto [views, images] = read_sequence(options);
+  const ReadSequence read = read_sequence(options);
   std::vector<std::filesystem::path> maps;
   if (!options.depth.empty()) {
     const std::vector<std::filesystem::path> files = matching_files(options.depth);
     check_output(options, files, output);
-    maps = depth_maps_of_images(images, files, "--depth " + options.depth);
+    maps = depth_maps_of_images(read.images, files, "--depth " + options.depth);
   }
   check_output(options, {}, output);
   const ReadRig rig = read_named_rig(options.rig, session, {maps.empty() ? "" : maps[0].string()});
@@ -217,11 +217,12 @@ void characterise_sequence(const SequenceArguments& options,
   {
     Progress progress(session, "views");
     samples = with_errors_of(options.segments, [&] {
-      return sequence_samples(camera, views, depth, options.how,
+      return sequence_samples(camera, read.views, depth, options.how,
                               [&](int done, int total) { progress.update(done, total); });
     });
   }
-  const MeasuredSequence sequence = measure_sequence(samples, views, options.block_m, measuring);
+  const MeasuredSequence sequence =
+      measure_sequence(samples, read.views, options.block_m, measuring);
   const bool trusted = report_limits(sequence, session);
   if (!output.empty()) {
     if (trusted) {

@@ -19,6 +19,7 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/streams.h"
+#include "cli/program/unexpected_words.h"
 #include "cli/verbs.h"
 #include "sim/image_systems/matcher_system.h"
 #include "sim/mpi/mpi_launch.h"
@@ -31,20 +32,6 @@ namespace {
 void register_all_systems() {
   vernier::sim::internal::register_systems();
   register_system(vernier::sim::internal::matcher_kind());
-}
-
-/// The message for arguments that belong to no option. An unquoted pattern is expanded by the
-/// shell.
-std::string not_expected(const CLI::App& app) {
-  const std::vector<std::string> words = app.remaining(true);
-  if (words.empty()) return "unexpected argument";
-  std::string text = "unexpected argument " + vernier::internal::in_quotes(words.front());
-  if (words.size() == 1) return text;
-  text += fmt::format(" and {} more", words.size() - 1);
-  const bool images = std::all_of(words.begin(), words.end(), [](const std::string& word) {
-    return word.front() != '-' && std::filesystem::path(word).has_extension();
-  });
-  return images ? text + "; quote the pattern, for example 'left*.png'" : text;
 }
 
 /// The words of the command line, last one first, as CLI11 takes them. Help is given whatever else
@@ -158,9 +145,9 @@ int main(int argc, char** argv) {
   try {
     perform(app, session, argc, argv);
   } catch (const CLI::ExtrasError& error) {
-    return bad_input(not_expected(app) + " (see vernier --help)");
+    return bad_input(cli::unexpected_words(app));
   } catch (const CLI::ParseError& error) {
-    return bad_input(std::string(error.what()) + " (see vernier --help)");
+    return bad_input(error.what() + cli::where_help_is(app));
   } catch (const Error& error) {
     return bad_input(error.what());
   } catch (const std::filesystem::filesystem_error& error) {

@@ -48,18 +48,30 @@ Nearest nearest(std::string_view word, const std::vector<std::string_view>& know
   return best;
 }
 
+/// Whether no more than half of a word's letters differ.
+bool is_near(const Nearest& found, std::string_view word) {
+  const std::size_t size = std::min(word.size(), compared_bytes);
+  return 2 * found.distance <= std::max(size, std::size_t{2});
+}
+
 }  // namespace
 
 std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known) {
   constexpr std::size_t few = 20;
   const Nearest best = nearest(word, known);
-  const std::size_t size = std::min(word.size(), compared_bytes);
-  if (2 * best.distance <= std::max(size, std::size_t{2}) || known.size() > few) {
+  if (is_near(best, word) || known.size() > few) {
     return "did you mean '" + shortened(best.word) + "'?";
   }
   std::vector<std::string> quoted;
   for (const std::string_view one : known) quoted.push_back("'" + shortened(one) + "'");
   return "use " + alternatives(quoted);
+}
+
+std::optional<std::string> near_word(std::string_view word,
+                                     const std::vector<std::string_view>& known) {
+  const Nearest best = nearest(word, known);
+  if (known.empty() || !is_near(best, word)) return {};
+  return best.word;
 }
 
 std::optional<std::string> misspelt_word(std::string_view word,

@@ -13,6 +13,10 @@ namespace vernier::internal {
 /// known and none is near it, a list of them.
 std::string unknown_word_remedy(std::string_view word, const std::vector<std::string_view>& known);
 
+/// The known word that is nearest to one that is none, if no more than half of its letters differ.
+std::optional<std::string> near_word(std::string_view word,
+                                     const std::vector<std::string_view>& known);
+
 /// The known word that is meant by one that is none: behind its first letter one is missing, too
 /// much or another, or two are exchanged. Nothing for a known word.
 std::optional<std::string> misspelt_word(std::string_view word,

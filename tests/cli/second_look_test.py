@@ -239,6 +239,15 @@ class WrongThing(cli_test.Case):
         (self.folder / 'o.csv').write_text('\n'.join(board_lines(frames=4)))
         self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size', '640',
                        '-o', self.folder / 'r.json', of='use the form 640x480')
+        for words, meant in (
+                (('studdy', 'a.toml'), "\"studdy\" and 1 more; did you mean 'study'? (see vernier --help)"),
+                (('study', 'a.toml', '--thread=2'),
+                 "\"--thread=2\"; did you mean '--threads'? (see vernier study --help)"),
+                (('world', 'inof', 'office'), "\"inof\" and 1 more; did you mean 'info'?"),
+                (('world', 'info', 'office', '--quite-different'),
+                 '"--quite-different" (see vernier world info --help)'),
+                (('calibrate', '--bord', '9x6'), "did you mean '--board'? (see vernier calibrate")):
+            self.complains(*words, of=meant)
 
     def test_the_table_says_where_its_corners_are(self):
         text = self.works('uncertainty', 'nominal', '--samples', '50', '--grid', '4x3').stdout

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/program/unexpected_words.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "calib/base/nearest_word.h"
+#include "calib/base/shown_text.h"
+#include "cli/program/namespaces.h"
+
+namespace vernier::cli {
+namespace {
+
+/// The innermost verb that the command line named, or the program.
+const CLI::App& named_verb(const CLI::App& app) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  return named.empty() ? app : named_verb(*named.back());
+}
+
+/// What may stand in the place of a word: the verb's options, or verbs.
+std::vector<std::string> expected_words(const CLI::App& verb, bool options) {
+  std::vector<std::string> words;
+  if (options) {
+    for (const CLI::Option* option : verb.get_options()) {
+      for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* other : verb.get_subcommands({})) words.push_back(other->get_name());
+  }
+  return words;
+}
+
+/// An unquoted pattern is expanded by the shell.
+bool are_files(const std::vector<std::string>& words) {
+  return words.size() > 1 && std::ranges::all_of(words, [](const std::string& word) {
+           return !word.starts_with('-') && std::filesystem::path(word).has_extension();
+         });
+}
+
+}  // namespace
+
+std::string where_help_is(const CLI::App& app) {
+  const CLI::App& verb = named_verb(app);
+  std::string names;
+  for (const CLI::App* part = &verb; part != &app; part = part->get_parent()) {
+    names = part->get_name() + " " + names;
+  }
+  return fmt::format(" (see vernier {}--help)", names);
+}
+
+std::string unexpected_words(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return "unexpected argument" + where_help_is(app);
+  std::string text = "unexpected argument " + in_quotes(words.front());
+  if (words.size() > 1) text += fmt::format(" and {} more", words.size() - 1);
+  const bool option = words.front().starts_with('-');
+  const std::string_view word = std::string_view(words.front()).substr(0, words.front().find('='));
+  const std::vector<std::string> expected = expected_words(named_verb(app), option);
+  if (are_files(words)) {
+    text += "; quote the pattern, for example 'left*.png'";
+  } else if (const auto meant = near_word(word, {expected.begin(), expected.end()})) {
+    text += "; did you mean '" + *meant + "'?";
+  }
+  return text + where_help_is(app);
+}
+
+}  // namespace vernier::cli

@@ -31,6 +31,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+#ifdef __clang__
+constexpr const char* compiler_name = __VERSION__;  // with the compiler's name
+#else
+constexpr const char* compiler_name = "GCC " __VERSION__;
+#endif
+
 /// One checked item.
 struct Finding {
   std::string what, value;
@@ -160,7 +166,7 @@ std::vector<Finding> findings() {
   const char* data = std::getenv("VERNIER_DATA");
   return {
       {"vernier", VERNIER_VERSION},
-      {"compiler", __VERSION__},
+      {"compiler", compiler_name},
       {"instruction set of kernels", std::string(instruction_set())},
       {"processors", std::to_string(std::thread::hardware_concurrency())},
       {"Ceres", CERES_VERSION_STRING},

@@ -87,8 +87,8 @@ TEST(ExpectedCoefficient, IsTheMeanOverTrials) {
   struct Case {
     int bins, n_p, n_q;
   };
-  for (const auto& [bins, n_p, n_q] :
-       {Case{4, 200, 200}, Case{20, 800, 400}, Case{60, 3000, 6000}}) {
+  for (const Case& c : {Case{4, 200, 200}, Case{20, 800, 400}, Case{60, 3000, 6000}}) {
+    const int bins = c.bins;
     // Uneven, with at least half of the even share in each bin.
     const Eigen::VectorXd p = 0.5 * random_histogram(static_cast<std::uint64_t>(bins), bins) +
                               Eigen::VectorXd::Constant(bins, 0.5 / bins);
@@ -106,13 +106,13 @@ TEST(ExpectedCoefficient, IsTheMeanOverTrials) {
     const int trials = 2000;
     double sum = 0, squares = 0;
     for (int i = 0; i < trials; ++i) {
-      const double b = bhattacharyya_coefficient(counts(n_p), counts(n_q));
+      const double b = bhattacharyya_coefficient(counts(c.n_p), counts(c.n_q));
       sum += b;
       squares += b * b;
     }
     const double mean = sum / trials;
     const double error = std::sqrt((squares / trials - mean * mean) / trials);
-    const double expected = expected_coefficient(bins, n_p, n_q);
+    const double expected = expected_coefficient(bins, c.n_p, c.n_q);
     // Sampling error, and the next order: a twentieth of what counts cost.
     EXPECT_NEAR(mean, expected, 4 * error + 0.05 * (1 - expected)) << bins;
     RecordProperty("bins_" + std::to_string(bins) + "_cost_ratio",

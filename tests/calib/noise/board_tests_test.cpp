@@ -17,7 +17,7 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr CalibrationOptions plain{.reject_outliers = false, .check_input = false};
+const CalibrationOptions plain{.reject_outliers = false, .check_input = false};
 
 SimulatedBoard few_views(int frames, std::uint32_t trial = 0) {
   return simulate_board(test::stereo_rig(), {},

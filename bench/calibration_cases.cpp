@@ -72,7 +72,7 @@ Rig drawn_rig(Random& random, const CameraModel& model) {
   const double baseline = uniform(random, 0.05, 0.25);
   rig.T_camera_first = {
       Pose{}, Pose{rotation_from_vector(turn),
-                   baseline * Eigen::Vector3d(-1, 0.01 * normal(random), 0.01 * normal(random))}};
+                   baseline * Eigen::Vector3d{-1, 0.01 * normal(random), 0.01 * normal(random)}}};
   return rig;
 }
 

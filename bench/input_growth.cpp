@@ -86,9 +86,10 @@ double joined_rooms_s(int rooms) {
     const Vector3d shift(8.0 * room, 0, 0);
     std::vector<std::pair<Vector3d, Vector3d>> lines;
     for (int i = 0; i < 60; ++i) {
-      const Vector3d middle(draws.uniform(-1.5, 1.5), draws.uniform(-1.5, 1.5),
-                            draws.uniform(0, 2.4));
-      const Vector3d along = Vector3d(draws.normals(3)).normalized() * draws.uniform(0.15, 0.8);
+      const Vector3d middle{draws.uniform(-1.5, 1.5), draws.uniform(-1.5, 1.5),
+                            draws.uniform(0, 2.4)};
+      const Vector3d way(draws.normals(3));
+      const Vector3d along = way.normalized() * draws.uniform(0.15, 0.8);
       lines.emplace_back(middle - along, middle + along);
     }
     for (int v = 0; v < 10; ++v) {
@@ -118,7 +119,7 @@ double aliases_s(int uprights) {
   world.objects.resize(1);
   RandomStream draws({.seed = 7});
   for (int i = 0; i < uprights; ++i) {
-    const Vector3d foot(draws.uniform(0, 20), draws.uniform(0, 20), 0);
+    const Vector3d foot{draws.uniform(0, 20), draws.uniform(0, 20), 0};
     world.segments.push_back({foot, foot + Vector3d(0, 0, 2.5), 0});
   }
   const Visibility visibility(world);

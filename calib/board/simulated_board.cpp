@@ -29,17 +29,18 @@ Pose draw_pose(RandomStream& draws,
                const Rig& rig,
                const Eigen::Vector3d& board_centre_m,
                const SimulatedBoardOptions& options) {
-  const Eigen::Vector3d tilt(draws.uniform(-1, 1) * options.tilt_rad,
-                             draws.uniform(-1, 1) * options.tilt_rad, draws.uniform(-1, 1) * 0.4);
+  // from the last coordinate to the first, the order in which all figures were drawn
+  const double turn = draws.uniform(-1, 1) * 0.4;
+  const double tilt_y = draws.uniform(-1, 1) * options.tilt_rad;
+  const double tilt_x = draws.uniform(-1, 1) * options.tilt_rad;
   const double z = options.distance_m * draws.uniform(2.0 / 3, 4.0 / 3);
   const Camera& camera = rig.cameras[0];
   const double half_x = 0.5 * camera.size_px[0] / (camera.f_px() * camera.ax());
   const double half_y = 0.5 * camera.size_px[1] / camera.f_px();
-  const Eigen::Vector3d centre(draws.uniform(-1, 1) * half_x * z, draws.uniform(-1, 1) * half_y * z,
-                               z);
+  const double y = draws.uniform(-1, 1) * half_y * z, x = draws.uniform(-1, 1) * half_x * z;
   Pose T_first_board;
-  T_first_board.R = rotation_from_vector(tilt);
-  T_first_board.t = centre - T_first_board.R * board_centre_m;
+  T_first_board.R = rotation_from_vector({tilt_x, tilt_y, turn});
+  T_first_board.t = Eigen::Vector3d(x, y, z) - T_first_board.R * board_centre_m;
   return T_first_board;
 }
 

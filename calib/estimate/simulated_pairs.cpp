@@ -23,9 +23,9 @@ Eigen::Vector3d draw_point(RandomStream& draws,
                            const Camera& camera,
                            const Eigen::Vector3d& normal,
                            const SimulatedPairsOptions& options) {
-  const Eigen::Vector2d pixel(draws.uniform(0, camera.size_px[0] - 1),
-                              draws.uniform(0, camera.size_px[1] - 1));
-  const Eigen::Vector3d ray = unproject(camera, pixel);
+  const double y = draws.uniform(0, camera.size_px[1] - 1);
+  const double x = draws.uniform(0, camera.size_px[0] - 1);
+  const Eigen::Vector3d ray = unproject(camera, {x, y});
   const double inverse_z = draws.uniform(1 / options.farthest_m, 1 / options.nearest_m);
   if (options.scene == SimulatedScene::plane) return ray / normal.dot(ray);
   return ray / inverse_z;
@@ -40,7 +40,8 @@ bool well_inside(const Camera& camera, const Eigen::Vector2d& pixel, double bord
 Eigen::Vector3d draw_plane(std::uint64_t seed, const SimulatedPairsOptions& options) {
   RandomStream draws({.seed = seed, .source = pair_source, .eye = 2});
   const double inverse_z = 0.5 * (1 / options.farthest_m + 1 / options.nearest_m);
-  return inverse_z * Eigen::Vector3d(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 1);
+  const double y = draws.uniform(-0.3, 0.3), x = draws.uniform(-0.3, 0.3);
+  return inverse_z * Eigen::Vector3d(x, y, 1);
 }
 
 /// The pixels of a point that both cameras see.

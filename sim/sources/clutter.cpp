@@ -70,8 +70,9 @@ class Clutter : public UncertaintySource {
     constexpr int most_draws = 100;
     const Camera& left = rig.cameras[0];
     for (int i = 0; i < most_draws; ++i) {
-      const Eigen::Vector2d middle(draws.uniform(0, left.size_px[0]) - 0.5,
-                                   draws.uniform(0, left.size_px[1]) - 0.5);
+      const double y = draws.uniform(0, left.size_px[1]) - 0.5;
+      const double x = draws.uniform(0, left.size_px[0]) - 0.5;
+      const Eigen::Vector2d middle(x, y);
       const double way = draws.uniform(0, std::numbers::pi);
       const double half = draws.uniform(shortest_px_, longest_px_) / 2;
       const Eigen::Vector2d along = half * Eigen::Vector2d(std::cos(way), std::sin(way));

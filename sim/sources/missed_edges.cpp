@@ -51,7 +51,8 @@ class MissedEdges : public UncertaintySource {
                         .eye = 2};
     RandomStream grid(place);
     const double turn_rad = grid.uniform(0, std::numbers::pi / 2);
-    const Eigen::Vector2d offset(grid.uniform(), grid.uniform());
+    const double offset_y = grid.uniform(), offset_x = grid.uniform();
+    const Eigen::Vector2d offset(offset_x, offset_y);
     const Eigen::Vector2d at = Eigen::Rotation2Dd(turn_rad) * context.at_m / side_m_ + offset;
     place.trial = index(at.x(), 32);
     place.frame = index(at.y(), 22);  // its bits in a counter

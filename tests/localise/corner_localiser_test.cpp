@@ -41,7 +41,7 @@ std::vector<Mark> marks(std::uint64_t seed, int count, double x_m = 0) {
   std::vector<Mark> room;
   for (int i = 0; i < count; ++i) {
     RandomStream d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
-    const Eigen::Vector3d at(x_m + d.uniform(2, 8), d.uniform(-3, 3), d.uniform(0, 2.4));
+    const Eigen::Vector3d at{x_m + d.uniform(2, 8), d.uniform(-3, 3), d.uniform(0, 2.4)};
     room.push_back({at, d.normals(16).cast<float>().normalized()});
   }
   return room;

@@ -153,7 +153,8 @@ TEST(KnownLines, AgreeWithTheRule) {
   RandomStream d({.seed = 3});
   for (PlaceLine& line : second) {
     const Eigen::Vector3d u = (line.b_m - line.a_m).normalized();
-    line.a_m += d.uniform(-0.4, 0.4) * u + Eigen::Vector3d(0, d.uniform(-0.1, 0.1), 0);
+    line.a_m += d.uniform(-0.4, 0.4) * u;
+    line.a_m.y() += d.uniform(-0.1, 0.1);
     line.b_m += Eigen::Vector3d(0, d.uniform(-0.1, 0.1), 0);
   }
   KnownLines known;
@@ -269,7 +270,7 @@ PlaceView one_upright(const TopologicalMap& map, int times, double jitter_m) {
   view.rig = map.nodes[0].view.rig;
   RandomStream d({.seed = 5});
   for (int i = 0; i < times; ++i) {
-    const Eigen::Vector3d off(jitter_m * d.normal(), jitter_m * d.normal(), 0);
+    const Eigen::Vector3d off{jitter_m * d.normal(), jitter_m * d.normal(), 0};
     view.lines.push_back({Eigen::Vector3d(2, 0.5, 0) + off, Eigen::Vector3d(2, 0.5, 1.5) + off,
                           LineKind::vertical, 0.01});
   }

@@ -81,8 +81,8 @@ MapNode node_of_random_lines(std::uint64_t seed, std::uint32_t node, int lines) 
   MapNode made{{10.0 * node, 0, 0}, {}};
   for (int k = 0; k < lines; ++k) {
     RandomStream d({.seed = seed, .trial = node, .feature = static_cast<std::uint32_t>(k)});
-    const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
-    const Eigen::Vector2d b = a + Eigen::Vector2d(d.uniform(-80, 80), d.uniform(-80, 80));
+    const Eigen::Vector2d a{d.uniform(0, 640), d.uniform(0, 480)};
+    const Eigen::Vector2d b = a + Eigen::Vector2d{d.uniform(-80, 80), d.uniform(-80, 80)};
     made.view.image_lines.push_back({a, b});
   }
   return made;
@@ -93,7 +93,7 @@ PlaceView noisy(const PlaceView& view, std::uint64_t seed, double sigma_px) {
   RandomStream d({.seed = seed});
   for (const auto& line : view.image_lines) {
     const auto end = [&](const Eigen::Vector2d& x) -> Eigen::Vector2d {
-      return x + sigma_px * Eigen::Vector2d(d.normal(), d.normal());
+      return x + sigma_px * Eigen::Vector2d{d.normal(), d.normal()};
     };
     if (d.uniform() < 0.8) seen.image_lines.push_back({end(line.a_px), end(line.b_px)});
   }

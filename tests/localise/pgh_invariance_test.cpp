@@ -30,8 +30,8 @@ LinesOfImage random_lines_in_image(std::uint64_t seed) {
   LinesOfImage lines;
   for (int i = 0; i < 25; ++i) {
     RandomStream d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
-    const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
-    lines.push_back({a, a + Eigen::Vector2d(d.uniform(-90, 90), d.uniform(-90, 90))});
+    const Eigen::Vector2d a{d.uniform(0, 640), d.uniform(0, 480)};
+    lines.push_back({a, a + Eigen::Vector2d{d.uniform(-90, 90), d.uniform(-90, 90)}});
   }
   return lines;
 }
@@ -54,7 +54,7 @@ Room each_end(Room room, Move move) {
 LinesOfImage moved(const LinesOfImage& lines, std::uint64_t seed) {
   RandomStream d({.seed = seed});
   const Eigen::Rotation2Dd R(d.uniform(-3, 3));
-  const Eigen::Vector2d t(d.uniform(-200, 200), d.uniform(-200, 200));
+  const Eigen::Vector2d t{d.uniform(-200, 200), d.uniform(-200, 200)};
   return each_end(lines, [&](const Eigen::Vector2d& x) -> Eigen::Vector2d { return R * x + t; });
 }
 

@@ -26,8 +26,8 @@ std::vector<ImageSegment> random_image_lines(std::uint64_t seed, int count) {
   std::vector<ImageSegment> lines;
   for (int i = 0; i < count; ++i) {
     RandomStream d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
-    const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
-    lines.push_back({a, a + Eigen::Vector2d(d.uniform(-120, 120), d.uniform(-120, 120))});
+    const Eigen::Vector2d a{d.uniform(0, 640), d.uniform(0, 480)};
+    lines.push_back({a, a + Eigen::Vector2d{d.uniform(-120, 120), d.uniform(-120, 120)}});
   }
   return lines;
 }
@@ -129,7 +129,7 @@ TEST(PghBlur, IsThatOfErroneousEnds) {
   RandomStream draw({.seed = 5});
   for (int i = 0; i < trials; ++i) {
     const auto moved = [&](const Eigen::Vector2d& x) -> Eigen::Vector2d {
-      return x + 2 * Eigen::Vector2d(draw.normal(), draw.normal());
+      return x + 2 * Eigen::Vector2d{draw.normal(), draw.normal()};
     };
     const Eigen::Vector2d a = moved(reference.a_px), b = moved(reference.b_px);
     const Eigen::Vector2d c = moved(other.a_px), e = moved(other.b_px);

@@ -57,8 +57,8 @@ TEST(Pgh, ImageHistogramsIgnoreShiftAndTurnInThePlane) {
   const Eigen::Rotation2Dd R(0.4);
   for (int i = 0; i < 30; ++i) {
     RandomStream d({.seed = 8, .feature = static_cast<std::uint32_t>(i)});
-    const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
-    const Eigen::Vector2d b = a + Eigen::Vector2d(d.uniform(-90, 90), d.uniform(-90, 90));
+    const Eigen::Vector2d a{d.uniform(0, 640), d.uniform(0, 480)};
+    const Eigen::Vector2d b = a + Eigen::Vector2d{d.uniform(-90, 90), d.uniform(-90, 90)};
     lines.push_back({a, b});
     moved.push_back({R * a + Eigen::Vector2d(30, -12), R * b + Eigen::Vector2d(30, -12)});
   }

@@ -76,7 +76,7 @@ struct PlaneBeforePair {
     std::uint32_t feature = 1000 * frame;
     for (int y = 30; y + 30 < height_px; y += 50) {
       for (int x = 80; x + 30 < width_px; x += 50) {
-        const Eigen::Vector2d centre(x + draws.uniform(-2, 2), y + draws.uniform(-2, 2));
+        const Eigen::Vector2d centre{x + draws.uniform(-2, 2), y + draws.uniform(-2, 2)};
         const double angle = draws.uniform(0, 2 * M_PI);
         const Eigen::Vector2d half =
             0.5 * draws.uniform(26, 34) * Eigen::Vector2d(std::cos(angle), std::sin(angle));

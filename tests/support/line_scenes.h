@@ -103,10 +103,10 @@ inline std::vector<TrueLine> random_lines(int count, std::uint32_t trial) {
   for (int i = 0; i < count; ++i) {
     vernier::internal::RandomStream draws(
         {.seed = 6, .trial = trial, .feature = static_cast<std::uint32_t>(i)});
-    const Eigen::Vector3d middle(draws.uniform(-1.5, 1.5), draws.uniform(-1.5, 1.5),
-                                 draws.uniform(0, 2.4));
-    const Eigen::Vector3d along =
-        Eigen::Vector3d(draws.normals(3)).normalized() * draws.uniform(0.15, 0.8);
+    const Eigen::Vector3d middle{draws.uniform(-1.5, 1.5), draws.uniform(-1.5, 1.5),
+                                 draws.uniform(0, 2.4)};
+    const Eigen::Vector3d way(draws.normals(3));
+    const Eigen::Vector3d along = way.normalized() * draws.uniform(0.15, 0.8);
     lines.push_back({middle - along, middle + along});
   }
   return lines;

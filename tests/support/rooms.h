@@ -29,7 +29,7 @@ inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {
       line.b_m =
           line.a_m + d.uniform(0.4, 2) * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     } else {
-      line.b_m = line.a_m + Eigen::Vector3d(d.uniform(-1, 1), d.uniform(-1, 1), d.uniform(0.5, 1));
+      line.b_m = line.a_m + Eigen::Vector3d{d.uniform(-1, 1), d.uniform(-1, 1), d.uniform(0.5, 1)};
     }
     room.push_back(line);
   }

@@ -86,7 +86,7 @@ inline WideViews wide_views(const Rig& rig, const WideViewOptions& options) {
         const Eigen::Vector3d x = rig.T_camera_first[c] * (T_first_board * all.target_m[i]);
         const Eigen::Vector2d pixel = seen_by(rig.cameras[c], x);
         const double angle = std::atan2(x.head<2>().norm(), x.z());
-        const Eigen::Vector2d noise(d.normal(), d.normal());
+        const Eigen::Vector2d noise{d.normal(), d.normal()};
         if (angle > options.most_deg * degree || !in_image(rig.cameras[c], pixel)) continue;
         seen.beyond += angle > 90 * degree;
         view.ids.push_back(i);

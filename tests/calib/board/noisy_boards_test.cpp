@@ -82,7 +82,7 @@ TEST(NoisyBoards, ASmallBoardAmongRoundDotsIsFound) {
     cv::Mat image = test::photograph(test::draw(chessboard), camera);
     vernier::internal::RandomStream d({.seed = seed});
     for (int dots = 0; dots < 150;) {
-      const Eigen::Vector2d off(d.uniform(-235, 235), d.uniform(-175, 175));
+      const Eigen::Vector2d off{d.uniform(-235, 235), d.uniform(-175, 175)};
       if (std::abs(off.x()) < 65 && std::abs(off.y()) < 55) continue;
       const Eigen::Vector2d p = camera.centre() + off;
       cv::circle(image, {cvRound(p.x()), cvRound(p.y())}, 4, test::ink, cv::FILLED, cv::LINE_AA);

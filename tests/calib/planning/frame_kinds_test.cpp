@@ -143,7 +143,7 @@ BoardView cut_view(const SimulatedBoard& board, const BoardView& whole) {
       const Eigen::Vector2d pixel = project(rig.cameras[c], x);
       if (!in_image(rig.cameras[c], pixel)) continue;
       cut.ids.push_back(id);
-      cut.pixels_px.emplace_back(pixel + 0.2 * Eigen::Vector2d(draws.normal(), draws.normal()));
+      cut.pixels_px.emplace_back(pixel + 0.2 * Eigen::Vector2d{draws.normal(), draws.normal()});
     }
     if (2 * cut.ids.size() < whole.ids.size()) return cut;
   }

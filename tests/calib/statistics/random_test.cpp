@@ -20,7 +20,10 @@ TEST(RandomStream, SamePlaceSameNumbers) {
   const RandomCounter place{
       .seed = 7, .trial = 3, .feature = 11, .source = 2, .eye = 1, .frame = 5};
   RandomStream a(place), b(place);
-  for (int i = 0; i < 9; ++i) EXPECT_EQ(a.uniform(), b.uniform());
+  for (int i = 0; i < 9; ++i) {
+    const double drawn = a.uniform();
+    EXPECT_EQ(drawn, b.uniform());
+  }
 }
 
 TEST(RandomStream, EveryPartOfThePlaceMatters) {

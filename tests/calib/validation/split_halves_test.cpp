@@ -52,7 +52,7 @@ TEST(SplitHalves, ErrorsThatAViewSharesAreSeenByTheBoundAlone) {
   for (BoardView& view : board.observations.views) {
     if (view.camera != 1) continue;
     RandomStream draws({.seed = 461, .trial = static_cast<std::uint32_t>(view.frame)});
-    const Eigen::Vector2d shift(0.5 * draws.normal(), 0.5 * draws.normal());
+    const Eigen::Vector2d shift{0.5 * draws.normal(), 0.5 * draws.normal()};
     for (Eigen::Vector2d& pixel : view.pixels_px) pixel += shift;
   }
   const SplitHalvesResult result = compare_split_halves(

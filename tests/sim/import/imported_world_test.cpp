@@ -213,7 +213,7 @@ TEST(ImportedWorld, NearlyUprightEdgesBecomeUpright) {
   std::map<std::array<double, 3>, Eigen::Vector3d> moved;
   for (Eigen::Vector3d& v : mesh.vertices) {
     const auto [at, is_new] = moved.try_emplace({v.x(), v.y(), v.z()});
-    if (is_new) at->second = v + 1e-4 * Eigen::Vector3d(draws.normal(), draws.normal(), 0);
+    if (is_new) at->second = v + 1e-4 * Eigen::Vector3d{draws.normal(), draws.normal(), 0};
     v = at->second;
   }
   ImportOptions options;

@@ -49,7 +49,7 @@ struct Reconstruction {
   Reconstruction() {
     RandomStream draws({.seed = 11});
     const auto in_model = [&](const Vector3d& x) -> Vector3d {
-      const Vector3d error(draws.normal(), draws.normal(), draws.normal());
+      const Vector3d error{draws.normal(), draws.normal(), draws.normal()};
       return T_model_world * Vector3d((x + 0.01 * error) / unit_m);
     };
     for (const WorldSegment& s : world.segments) {

@@ -55,8 +55,8 @@ TEST(DifferentialDrive, IntegratesAsManySmallStepsDo) {
   WheelSpeeds exact, stepped;
   RandomStream draws({.seed = 3});
   for (int i = 0; i < 25; ++i) {
-    const DriveCommand command =
-        wheel_command(drive, draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(0.05, 3));
+    const double forward = draws.uniform(-1, 1), turn = draws.uniform(-1, 1);
+    const DriveCommand command = wheel_command(drive, forward, turn, draws.uniform(0.05, 3));
     const Pose2D end = after(wheel_phases(drive, command, exact));
     const Pose2D truth = small_steps(drive, command, stepped);
     EXPECT_NEAR(end.x_m, truth.x_m, 2e-9);

@@ -74,7 +74,7 @@ class MadeSequence {
   void make_lines(int count) {
     auto draw = draws(0, 0);
     for (int tries = 0; static_cast<int>(lines_.size()) < count && tries < 20 * count; ++tries) {
-      const Eigen::Vector3d middle(draw.uniform(-3, 6), draw.uniform(-1.4, 1.4), 4);
+      const Eigen::Vector3d middle{draw.uniform(-3, 6), draw.uniform(-1.4, 1.4), 4};
       const double angle = draw.uniform(0, M_PI), half = draw.uniform(0.12, 0.3);
       const Eigen::Vector3d d = half * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
       const Line line{middle - d, middle + d};
@@ -116,7 +116,7 @@ class MadeSequence {
     const int false_ones =
         static_cast<int>(many * static_cast<double>(view.segments.size()) + draw.uniform());
     for (int k = 0; k < false_ones; ++k) {
-      const Eigen::Vector2d middle(draw.uniform(60, 580), draw.uniform(60, 420));
+      const Eigen::Vector2d middle{draw.uniform(60, 580), draw.uniform(60, 420)};
       const double angle = draw.uniform(0, 2 * M_PI), half = draw.uniform(10, 40);
       const Eigen::Vector2d d = half * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       add_segment(T, middle - d, middle + d, 1, draw, view);
@@ -185,7 +185,8 @@ class MadeSequence {
     for (int end = 0; end < 2; ++end) {
       Eigen::Vector2d& px = end == 0 ? a : b;
       const double z = scale * depth_at(T, px) + sigma_z_m * draw.normal();
-      px += errors_.across_px * draw.normal() * n + errors_.along_px * draw.normal() * t;
+      px += errors_.across_px * draw.normal() * n;
+      px += errors_.along_px * draw.normal() * t;
       const Eigen::Vector3d ray((px.x() - 319.5) / 500, (px.y() - 239.5) / 500, 1);
       (end == 0 ? segment.in_space.a_m : segment.in_space.b_m) = z * ray;
       Eigen::Matrix3d C = Eigen::Matrix3d::Zero();

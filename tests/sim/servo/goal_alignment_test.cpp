@@ -28,7 +28,7 @@ using namespace vernier::sim::internal;
 namespace {
 
 SpaceLine random_line(RandomStream& draws) {
-  const Eigen::Vector3d u(draws.normal(), draws.normal(), draws.normal());
+  const Eigen::Vector3d u{draws.normal(), draws.normal(), draws.normal()};
   return {{draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(1, 4)}, u.normalized()};
 }
 
@@ -143,7 +143,7 @@ DesiredView some_view() {
   RandomStream draws({.seed = 8});
   for (int i = 0; i < 10; ++i) {
     SpaceLine line{{-0.6 + 0.13 * i, 0.1, draws.uniform(1.6, 2.4)},
-                   Eigen::Vector3d(0.02 * draws.normal(), 1, 0.05 * draws.normal()).normalized()};
+                   Eigen::Vector3d{0.02 * draws.normal(), 1, 0.05 * draws.normal()}.normalized()};
     view.lines.push_back({image_of(line, view.T_right_left), line, 300});
   }
   return view;

@@ -271,7 +271,7 @@ TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   world.objects.resize(1);
   RandomStream draws({.seed = 7});
   for (int i = 0; i < 10'000; ++i) {
-    const Eigen::Vector3d foot(draws.uniform(0, 20), draws.uniform(0, 20), 0);
+    const Eigen::Vector3d foot{draws.uniform(0, 20), draws.uniform(0, 20), 0};
     world.segments.push_back({foot, foot + Eigen::Vector3d(0, 0, 2.5), 0});
   }
   const Visibility visibility(world);
@@ -361,7 +361,7 @@ TEST(AliasFinder, TooManyLevelEdgesLeaveThePoseOpen) {
     world.objects.resize(1);
     RandomStream draws({.seed = 8});
     for (int i = 0; i < count; ++i) {
-      const Eigen::Vector3d at(draws.uniform(0, side_m), draws.uniform(0, side_m), 1.5);
+      const Eigen::Vector3d at{draws.uniform(0, side_m), draws.uniform(0, side_m), 1.5};
       const double turn = draws.uniform(0, std::numbers::pi);
       world.segments.push_back({at, at + Eigen::Vector3d(std::cos(turn), std::sin(turn), 0), 0});
     }

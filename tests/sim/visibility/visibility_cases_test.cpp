@@ -184,7 +184,7 @@ TEST(VisibilityCases, SeamsOfWallsDoNotLeakLight) {
     World world;  // a turned wall as a fan of triangles about an inner point, and lines behind
     const Pose T{rotation_from_vector({0, 0, draws.uniform(-0.6, 0.6)}), {0, 3, 0}};
     const Polygon border{{-9, 0, -9}, {0, 0, -9}, {9, 0, -9}, {9, 0, 1}, {9, 0, 9}, {-9, 0, 9}};
-    const Vector3d hub(draws.uniform(-1, 1), 0, draws.uniform(-1, 1));
+    const Vector3d hub{draws.uniform(-1, 1), 0, draws.uniform(-1, 1)};
     for (std::size_t i = 0; i < border.size(); ++i) {
       add_surface(world, {T * hub, T * border[i], T * border[(i + 1) % border.size()]});
     }
@@ -192,7 +192,7 @@ TEST(VisibilityCases, SeamsOfWallsDoNotLeakLight) {
       const Vector3d a = T * random_point(draws, {-2, 0.01, -2}, {2, 3, 2});
       world.segments.push_back({a, T * random_point(draws, {-2, 0.01, -2}, {2, 3, 2}), 0});
     }
-    const Vector3d eye(draws.uniform(-1, 1), 0, draws.uniform(-1, 1));
+    const Vector3d eye{draws.uniform(-1, 1), 0, draws.uniform(-1, 1)};
     for (const Vector3d& spoke : border) {  // exactly behind the seams, up to rounding
       world.segments.push_back({eye + 1.2 * (T * hub - eye), eye + 1.2 * (T * spoke - eye), 0});
       world.corners.push_back({eye + 1.3 * (T * (hub + 0.1 * (spoke - hub)) - eye), 0});

@@ -83,7 +83,7 @@ TEST_P(BandByModel, HoldsTheTruthAtTheStatedRateOverRigs) {
   for (std::uint32_t trial = 0; n < 4000; ++trial) {
     const Rig truth = sampler.sample(1, 5, trial);
     RandomStream draws({.seed = 5, .trial = trial, .source = 201});
-    const Eigen::Vector2d pixel(draws.uniform(40, 600), draws.uniform(40, 440));
+    const Eigen::Vector2d pixel{draws.uniform(40, 600), draws.uniform(40, 440)};
     const double depth = 1 / draws.uniform(1 / 20.0, 1.0);
     const auto seen = pixel_pair(truth, depth * unproject(prior.rig.cameras[0], pixel));
     if (!seen || !in_image(truth.cameras[1], seen->other_px)) continue;

@@ -278,7 +278,7 @@ TEST(EdgeSegments, EndShortOfAJunctionWithinWhatTheyState) {
   for (unsigned trial = 0; trial < 40; ++trial) {
     RandomStream draws({54, trial});
     const double turn = draws.uniform(0, 2 * pi), opening = draws.uniform(60, 90) * pi / 180;
-    const Eigen::Vector2d at(40 + draws.uniform(-0.5, 0.5), 40 + draws.uniform(-0.5, 0.5));
+    const Eigen::Vector2d at{40 + draws.uniform(-0.5, 0.5), 40 + draws.uniform(-0.5, 0.5)};
     const Eigen::Vector2d stem(std::cos(turn + opening), std::sin(turn + opening));
     const Eigen::Vector2d bar_normal(-std::sin(turn), std::cos(turn)), across(-stem.y(), stem.x());
     const auto clean = test::photographed(80, 80, 0.8, [&](const Eigen::Vector2d& p) {

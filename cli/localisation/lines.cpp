@@ -30,6 +30,7 @@
 #include "localise/place.h"
 #include "localise/view_file.h"
 #include "localise/views/depth_view.h"
+#include "localise/views/image_names.h"
 #include "localise/views/segments_file.h"
 #include "stereo/corners/match_images.h"
 #include "stereo/grey_levels.h"
@@ -98,9 +99,8 @@ std::vector<Stance> stances(const LinesArguments& options, const std::vector<Ima
     all.assign(files.size(), {{}, options.height_m, turn_of(options)});
     return all;
   }
-  std::vector<std::filesystem::path> images;
-  for (const ImageFiles& pair : files) images.push_back(pair.left);
-  for (const FloorPose& at : floor_poses({options.poses, options.up, options.height_m}, images)) {
+  for (const FloorPose& at :
+       floor_poses({options.poses, options.up, options.height_m}, left_images(files))) {
     all.push_back({at.level.pose, at.level.height_m, at.level.R_level_camera});
   }
   return all;
@@ -192,6 +192,7 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
   const Camera camera = camera_of(options, files.front().left.string(), session);
   const auto rig = std::make_shared<const Rig>(rig_of({{camera, Pose{}}}));
   const std::vector<Stance> all = stances(options, files);
+  const std::vector<std::string> names = distinct_names(left_images(files));
   OutputFiles outputs;
   FileInProgress& views = outputs.add(options.output);
   FileInProgress* const segments_file = outputs.add_wanted(options.segments);
@@ -227,8 +228,7 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);
     views.append(view_line(seen));
     if (segments_file) {
-      segments_file->append(
-          segments_line(segments_of(files[i].left.filename().string(), segments)));
+      segments_file->append(segments_line(segments_of(names[i], segments)));
     }
     progress.update(static_cast<int>(i + 1), static_cast<int>(files.size()));
   }

@@ -48,9 +48,7 @@ std::vector<Pose> true_poses(const std::string& truth,
     throw Error(truth, "holds poses of the body, and the rig does not place its cameras on it",
                 "give the ASL folder or sensor.yaml files as --rig");
   }
-  std::vector<std::filesystem::path> images;
-  for (const ImageFiles& pair : files) images.push_back(pair.left);
-  std::vector<Pose> T_world_left = poses_of_images(poses, images, truth);
+  std::vector<Pose> T_world_left = poses_of_images(poses, left_images(files), truth);
   if (!poses.of_body) return T_world_left;
   for (Pose& T : T_world_left) T = T * *T_body_left;
   return T_world_left;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "calib/base/error_place.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -24,6 +25,7 @@
 #include "localise/pair_view.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
+#include "localise/views/image_names.h"
 #include "stereo/corners/match_images.h"
 #include "stereo/grey_levels.h"
 
@@ -42,6 +44,25 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
   return read;
 }
 
+/// Nothing of any pair without a file of poses.
+std::vector<std::optional<Pose2D>> poses_of_pairs(const ViewOptions& options,
+                                                  const std::vector<ImageFiles>& files) {
+  std::vector<std::optional<Pose2D>> found(files.size());
+  if (options.poses.empty()) return found;
+  const std::map<std::string, Pose2D> poses = read_place_poses(options.poses);
+  std::vector<std::string> names;
+  for (const auto& [name, pose] : poses) names.push_back(name);
+  const auto of_image = names_of_images(names, left_images(files), options.poses);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!of_image[i]) {
+      throw Error(options.poses, "has no pose of " + in_quotes(files[i].left.filename().string()),
+                  "add it, or leave the image out");
+    }
+    found[i] = poses.at(names[*of_image[i]]);
+  }
+  return found;
+}
+
 NamedViews views_of_images(const ViewOptions& options, Session& session) {
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
   const RigEstimate estimate =
@@ -49,17 +70,17 @@ NamedViews views_of_images(const ViewOptions& options, Session& session) {
                       {files.front().left.string(), files.front().right.string()})
           .estimate;
   const auto rig = std::make_shared<const Rig>(estimate.rig);
-  std::map<std::string, Pose2D> poses;
-  if (!options.poses.empty()) poses = read_place_poses(options.poses);
+  const std::vector<std::optional<Pose2D>> poses = poses_of_pairs(options, files);
   PairViewOptions how;
   how.max_disparity_px = options.max_disparity_px;
   how.with_corners = options.corners;
   if (estimate.covariance) how.calibration = estimate.covariance->matrix;
-  NamedViews read;
+  NamedViews read{{}, distinct_names(left_images(files))};
   constexpr std::size_t few = 5;
   std::optional<Progress> progress;
   if (files.size() > few) progress.emplace(session, "views of image pairs");
-  for (const ImageFiles& pair : files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const ImageFiles& pair = files[i];
     const RectifiedPair images =
         read_camera_images(*rig, options.rig, pair.left.string(), pair.right.string(), session);
     RecordedLooks seen;
@@ -68,14 +89,8 @@ NamedViews views_of_images(const ViewOptions& options, Session& session) {
              options.rig,
              [&] { return view_of_pair(rig, images.left, images.right, options.mount(), how); }),
          0});
-    if (const auto pose = poses.find(pair.left.filename().string()); pose != poses.end()) {
-      seen.pose = pose->second;
-    } else if (!poses.empty()) {
-      throw Error(options.poses, "has no pose of " + pair.left.filename().string(),
-                  "add it, or leave the image out");
-    }
+    seen.pose = poses[i];
     read.views.push_back(std::move(seen));
-    read.names.push_back(pair.left.filename().string());
     if (progress)
       progress->update(static_cast<int>(read.views.size()), static_cast<int>(files.size()));
   }

@@ -80,6 +80,8 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"sweep", nullptr},
             {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
+            {"same_queries", all_share_queries(results.cells)},
+            {"over_worlds", over_worlds_json(results)},
             {"comparisons", comparisons_json(results)}};
   if (localises) {
     json["protocol"] = name(first.experiment.protocol);

@@ -77,21 +77,6 @@ Json rig_json(const Study& study) {
   return json;
 }
 
-/// Success over swept worlds; empty if there are none.
-Json over_worlds_json(const StudyResults& results) {
-  Json json = Json::array();
-  for (const WorldSummary& s : summarise_over_worlds(results.cells)) {
-    const std::optional<Interval>& interval = s.success_interval_95;
-    json.push_back(
-        {{"label", s.label},
-         {"worlds", s.worlds},
-         {"success", s.worlds > 0 ? Json(s.success) : Json()},
-         {"success_interval_95", interval ? Json{interval->low, interval->high} : Json()},
-         {"success_interval_95_missing", interval ? Json() : Json(s.why_no_interval)}});
-  }
-  return json;
-}
-
 /// What became of the calibrations of a cell; null without any.
 Json calibrations_json(const std::optional<CalibrationRecord>& record) {
   if (!record) return {};
@@ -209,6 +194,20 @@ void add_system(const CellResult& cell, Json& json) {
 }
 
 }  // namespace
+
+Json over_worlds_json(const StudyResults& results) {
+  Json json = Json::array();
+  for (const WorldSummary& s : summarise_over_worlds(results.cells)) {
+    const std::optional<Interval>& interval = s.success_interval_95;
+    json.push_back(
+        {{"label", s.label},
+         {"worlds", s.worlds},
+         {"success", s.worlds > 0 ? Json(s.success) : Json()},
+         {"success_interval_95", interval ? Json{interval->low, interval->high} : Json()},
+         {"success_interval_95_missing", interval ? Json() : Json(s.why_no_interval)}});
+  }
+  return json;
+}
 
 Json cell_json(const CellResult& cell) {
   const CellSummary& s = cell.summary;

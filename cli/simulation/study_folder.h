@@ -30,6 +30,8 @@ Json cell_json(const CellResult& cell);
 /// Compares each cell with the closest previous one that has the same queries; p-values unadjusted
 /// and adjusted by Holm's method.
 Json comparisons_json(const StudyResults& results);
+/// Success over swept worlds; empty if there are none.
+Json over_worlds_json(const StudyResults& results);
 Json study_json(const Study& study, const StudyResults& results);
 
 /// "--shard 1/4, --shard 3/4", of many the first ten.

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -20,6 +19,7 @@
 #include "calib/formats/imported_rig.h"
 #include "calib/pose.h"
 #include "localise/trajectory.h"
+#include "localise/views/image_names.h"
 
 namespace vernier::localise::internal {
 
@@ -111,7 +111,7 @@ CameraPoses read_matrices(const std::filesystem::path& file) {
         !(M.determinant() > 0) || T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
       throw Error(place, "is not a pose [R t; 0 0 0 1]", "give camera to world, by rows");
     }
-    std::string name(fields[0].substr(fields[0].find_last_of('/') + 1));
+    std::string name(fields[0]);
     if (name.empty() || !names.insert(name).second) {
       throw Error(place, name.empty() ? "names no image" : "names its image a second time",
                   "name each image once");
@@ -133,10 +133,8 @@ CameraPoses read_colmap(const std::filesystem::path& file) {
   for (const colmap::Line& line : colmap::read_lines(file, true)) {
     if (line.size() < 10) line.check_count(10);
     std::string name = line.word(9);
-    name = name.substr(name.find_last_of('/') + 1);
-    if (name.empty() || !names.insert(name).second) {
-      throw Error(line.place(), "another image has the same name without folder",
-                  "give a model of the images of one camera");
+    if (!names.insert(name).second) {
+      throw Error(line.place(), "names its image a second time", "name each image once");
     }
     const Pose T = colmap::pose(line, 1, 1).inverse();
     read.poses.push_back({std::move(name), {}, checked_pose(T.R, T.t, line.place())});
@@ -269,19 +267,15 @@ std::vector<Pose> poses_of_images(const CameraPoses& poses,
     for (const CameraPose& pose : poses.poses) found.push_back(pose.T_world_camera);
     return found;
   }
-  std::map<std::string, const CameraPose*> by_name;
-  for (const CameraPose& pose : poses.poses) {
-    by_name.emplace(pose.image, &pose);
-    by_name.emplace(std::filesystem::path(pose.image).stem().string(), &pose);
-  }
-  for (const std::filesystem::path& image : images) {
-    auto at = by_name.find(image.filename().string());
-    if (at == by_name.end()) at = by_name.find(image.stem().string());
-    if (at == by_name.end()) {
-      throw Error(place, "has no pose of " + in_quotes(image.filename().string()),
+  std::vector<std::string> names;
+  for (const CameraPose& pose : poses.poses) names.push_back(pose.image);
+  const auto of_image = names_of_images(names, images, place);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!of_image[i]) {
+      throw Error(place, "has no pose of " + in_quotes(images[i].filename().string()),
                   "add it, or leave the image out");
     }
-    found.push_back(at->second->T_world_camera);
+    found.push_back(poses.poses[*of_image[i]].T_world_camera);
   }
   return found;
 }

@@ -14,7 +14,7 @@ namespace vernier::localise::internal {
 
 /// Where a camera, or what carries it, was: by the name of an image, by time, or by order.
 struct CameraPose {
-  std::string image;             ///< without folder; empty if not named
+  std::string image;             ///< as the file names it; empty if not named
   std::optional<double> time_s;  ///< seconds; empty if not known
   Pose T_world_camera;
 };
@@ -45,7 +45,7 @@ CameraPoses read_poses_of_camera(const std::filesystem::path& file_or_folder);
 std::optional<double> time_of_name(const std::string& stem);
 
 /// The poses of images, given by name, in their order. Named poses are found by the image's name
-/// with or without its ending. Where images are named after their times (seconds, or nanoseconds as
+/// (names_of_images). Where images are named after their times (seconds, or nanoseconds as
 /// ASL has them) and poses have times, a pose is interpolated between the two around (positions
 /// linearly, rotations along the shortest arc); it must lie between two that are at most `gap_s`
 /// apart. Else poses belong to images in order, and there must be as many. Throws Error(`place`).

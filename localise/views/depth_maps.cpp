@@ -15,6 +15,7 @@
 #include "calib/board/frame_numbering.h"
 #include "calib/error.h"
 #include "localise/views/camera_poses.h"
+#include "localise/views/image_names.h"
 
 namespace vernier::localise::internal {
 namespace {
@@ -57,11 +58,13 @@ std::map<std::int64_t, std::size_t> numbered(const Paths& files) {
 }
 
 /// The maps of equal names or numbers; empty where an image has none.
-Paths by_name(const Paths& images, const Paths& maps) {
-  std::map<std::string, Path> named;
-  for (const Path& map : maps) named.emplace(map.stem().string(), map);
+Paths by_name(const Paths& images, const Paths& maps, const std::string& place) {
+  std::vector<std::string> names;
+  for (const Path& map : maps) names.push_back(map.string());
   Paths found;
-  for (const Path& image : images) found.push_back(named[image.stem().string()]);
+  for (const auto& map : names_of_images(names, images, place)) {
+    found.push_back(map ? maps[*map] : Path());
+  }
   const auto of_maps = numbered(maps);
   for (const auto& [number, image] : numbered(images)) {
     const auto at = of_maps.find(number);
@@ -91,7 +94,7 @@ Paths depth_maps_by_time(const Paths& images, const Paths& maps) {
 Paths depth_maps_of_images(const Paths& images, const Paths& maps, const std::string& place) {
   if (images.size() == 1 && maps.size() == 1) return maps;
   const bool by_time = are_named_by_time(images) && are_named_by_time(maps);
-  Paths found = by_time ? depth_maps_by_time(images, maps) : by_name(images, maps);
+  Paths found = by_time ? depth_maps_by_time(images, maps) : by_name(images, maps, place);
   const auto without = std::count(found.begin(), found.end(), Path());
   if (without == 0) return found;
   if (!by_time && static_cast<std::size_t>(without) == images.size() &&

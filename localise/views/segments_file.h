@@ -20,7 +20,7 @@ struct ImageSegmentInSpace {
   bool reliable = true;     ///< stereo/segment.h
 };
 
-/// The segments of one image, by its name without folder.
+/// The segments of one image, by a name that tells it apart.
 struct SegmentsOfImage {
   std::string image;
   std::vector<ImageSegmentInSpace> segments;

@@ -73,7 +73,8 @@ WorldDescription make_part(BuildingKind kind,
 std::uint64_t seed_of_part(std::uint64_t seed, std::uint32_t part) {
   if (part == 0) return seed;
   RandomStream draws({.seed = seed, .trial = part, .feature = part_item, .source = building_draws});
-  return (std::uint64_t{draws.below(1U << 31U)} << 31U) | draws.below(1U << 31U);
+  const std::uint64_t high = draws.below(1U << 31U), low = draws.below(1U << 31U);
+  return (high << 31U) | low;
 }
 
 Vector3d moved(const Vector3d& x, double dx) { return to_grid(Vector3d(x + Vector3d(dx, 0, 0))); }

@@ -215,8 +215,8 @@ void furnish_hall_wall(BuildingSite& site, const RoomWall& wall, std::uint32_t n
         pin_papers(site, wall.frame, {x + 0.03, 1.18}, {x + 1.17, 1.97}, draws);
       }
     } else if (kind < 0.9) {
-      site.try_place("pallet_load_" + std::to_string(1 + draws.below(4)), wall.frame,
-                     {anywhere(1.3), 0, 0});
+      const double x = anywhere(1.3);
+      site.try_place("pallet_load_" + std::to_string(1 + draws.below(4)), wall.frame, {x, 0, 0});
     } else {
       const double x = anywhere(0.9), y = 1.0;
       const AlignedBox3d box(Vector3d(x, y - 0.35, 0), Vector3d(x + 0.95, y + 0.35, 1));

@@ -56,6 +56,11 @@ bool share_queries(const CellResult& a, const CellResult& b) {
   });
 }
 
+bool all_share_queries(const std::vector<CellResult>& cells) {
+  return std::all_of(cells.begin(), cells.end(),
+                     [&](const CellResult& cell) { return share_queries(cells.front(), cell); });
+}
+
 PairedComparison compare(const CellResult& a, const CellResult& b) {
   if (!share_queries(a, b)) {
     throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",

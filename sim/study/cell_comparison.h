@@ -14,6 +14,8 @@ namespace vernier::sim::internal {
 /// Whether two cells have the same queries: all trials of blocks that both contain start at the
 /// same pose, and there is at least one. False if the seed or the query protocol is swept.
 bool share_queries(const CellResult& a, const CellResult& b);
+/// Whether all cells have the queries of the first.
+bool all_share_queries(const std::vector<CellResult>& cells);
 
 /// Two cells on the same trials: number in which both succeeded, only one, neither. The p-values
 /// are for the null hypothesis that neither is better, NaN for fewer than six maps.

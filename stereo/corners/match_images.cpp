@@ -86,6 +86,12 @@ std::vector<ImageFiles> paired_images(const std::string& left, const std::string
   return pairs;
 }
 
+std::vector<std::filesystem::path> left_images(const std::vector<ImageFiles>& pairs) {
+  std::vector<std::filesystem::path> images;
+  for (const ImageFiles& pair : pairs) images.push_back(pair.left);
+  return images;
+}
+
 ImageMatching match_images(const ImageFiles& files,
                            const RigEstimate& prior,
                            const std::string& prior_place,

@@ -24,6 +24,8 @@ struct ImageFiles {
 /// has no partner or two images of one side have the same number.
 std::vector<ImageFiles> paired_images(const std::string& left, const std::string& right);
 
+std::vector<std::filesystem::path> left_images(const std::vector<ImageFiles>& pairs);
+
 struct ImageMatchingOptions {
   int corners = 400;  ///< maximum in the left image; the right image may have half as many more
   int cells = 0;      ///< distributes corners evenly over a grid of cells x cells; 0: off

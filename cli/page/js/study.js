@@ -27,6 +27,11 @@ export const PSI_MEANING = "ψ_c is the scale factor for the standard deviations
 
 export const cell_key = (cell, key) => (cell.settings || {})[key];
 
+/** Rigs whose error is given, or that are calibrated for a trial, are not drawn from a covariance. */
+export const psi_note = (cell) => cell_key(cell, "sources.calibration") === 1
+  && cell_key(cell, "rig.error") !== "given" && cell_key(cell, "calibration.views") === undefined
+  && " ψ_c = 1 uses the covariance of the rig's calibration unchanged.";
+
 /** The cell with ψ_c = 1, otherwise the first. */
 export function headline_cell(study) {
   const nominal = study.cells.find((cell) => cell_key(cell, "sources.calibration") === 1);
@@ -74,9 +79,7 @@ function headline_words(study, cell) {
   if (clustered) {
     notes.push(" The interval accounts for trials that share a recorded map.");
   }
-  if (cell_key(cell, "sources.calibration") === 1) {
-    notes.push(" ψ_c = 1 uses the covariance of the rig's calibration unchanged.");
-  }
+  notes.push(psi_note(cell));
   return [element("p", {}, words), element("p", {}, notes)];
 }
 
@@ -115,18 +118,34 @@ export function tile(name, value, rest) {
     rest && element("dd", { class: "rest" }, rest));
 }
 
+export const cell_words = (study, shared) =>
+  `A cell is one combination of settings${study.same_queries ? `; all cells ${shared}` : ""}. `;
+
+/** Success over the worlds of a sweep of them. */
+export function over_worlds_tables(study) {
+  const rows = study.over_worlds ?? [];
+  return rows.length === 0 ? [] : [table("Results over all worlds", [
+    { head: "Cells", text: true, cell: (row) => row.label },
+    { head: "Worlds", cell: (row) => count(row.worlds) },
+    { head: "Success", small: "95 % interval for further worlds like these", cell: (row) => [
+      percent(row.success), small(row.success_interval_95
+        ? range_percent(row.success_interval_95) : row.success_interval_95_missing)] },
+  ], rows, { wide: false })];
+}
+
 export function cells_section(report) {
   const study = report.study;
   const headline_of_study = headline_cell(study);
   const several = study.cells.length > 1;
   const made = section("cells", several ? "All cells" : "Results of the trials", paragraph(
-    several && "A cell is one combination of settings; all cells use the same queries. ",
+    several && cell_words(study, "use the same queries"),
     `Success: position within ${radius_of_cells(study)} of the truth; unanswered queries count as`
       + " failures. Coverage:"
       + " fraction of answered queries. Errors are medians over answered queries. CPU time is"
       + " from features in memory to the answer."));
   made.append(table(cells_caption(study), cell_columns(study), study.cells,
     { chosen: (cell) => several && cell === headline_of_study }));
+  made.append(...over_worlds_tables(study));
 }
 
 export const cells_caption = (study) => study.cells.length > 1

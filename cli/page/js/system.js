@@ -4,8 +4,8 @@ import { element, paragraph, section, small, table } from "./elements.js";
 import { DASH, count, counted, milliseconds, percent, setting, significant } from "./format.js";
 import { is_number } from "./numbers.js";
 import {
-  at_words, cell_key, cells_caption, headline_box, headline_cell, interval_words, outcome_columns,
-  share_column, tile, time_columns,
+  at_words, cell_key, cell_words, cells_caption, headline_box, headline_cell, interval_words,
+  outcome_columns, over_worlds_tables, psi_note, share_column, tile, time_columns,
 } from "./study.js";
 import { error_of, limit_words, one_limit } from "./trials.js";
 
@@ -29,9 +29,7 @@ function headline_words(study, cell) {
   if (cell.success_interval_95 && is_number(cell.blocks)) {
     notes.push(` The interval takes ${count(cell.blocks)} blocks of trials as independent.`);
   }
-  if (cell_key(cell, "sources.calibration") === 1) {
-    notes.push(" ψ_c = 1 uses the covariance of the rig's calibration unchanged.");
-  }
+  notes.push(psi_note(cell));
   return [element("p", {}, `In ${percent(cell.success)} of ${counted(cell.trials, "trial")}, the`
     + ` ${study.system.title} was ${limit_words(study, cell)}.`, interval_words(cell)),
   element("p", {}, notes)];
@@ -70,14 +68,14 @@ export function system_cells_section(study) {
   const { title } = study.system;
   const limit = one_limit(study) ? limit_words(study, study.cells[0]) : "at most the cell's limit";
   const made = section("cells", several ? "All cells" : "Results of the trials", paragraph(
-    several && "A cell is one combination of settings; all cells have the same trials. ",
+    several && cell_words(study, "have the same trials"),
     `Success: ${title} ${limit}; trials without an answer count as failures. Coverage: fraction of`
       + ` trials with an answer. Failed: trials without a result. Error: ${title} of answered`
       + " trials. CPU time: mean of the trials."));
   const headline_of_study = headline_cell(study);
   made.append(table(cells_caption(study), cell_columns(study), study.cells,
     { chosen: (cell) => several && cell === headline_of_study }));
-  made.append(...failures_tables(study), ...measured_tables(study));
+  made.append(...over_worlds_tables(study), ...failures_tables(study), ...measured_tables(study));
 }
 
 function cell_columns(study) {

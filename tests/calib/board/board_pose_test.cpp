@@ -203,7 +203,7 @@ BoardObservations wide_views(std::uint64_t seed) {
       inside = inside && T.R.col(2).dot(sight) > 0.35;
       for (auto& p : views.back().pixels_px) {
         inside = inside && p.x() > 5 && p.y() > 5 && p.x() < 1994 && p.y() < 1494;
-        p += Eigen::Vector2d(noise_px(chance), noise_px(chance));
+        p += Eigen::Vector2d{noise_px(chance), noise_px(chance)};
       }
     }
     if (!inside) continue;

@@ -47,7 +47,7 @@ BoardObservations jittered(BoardObservations o, double most_px, std::uint64_t se
   std::uniform_real_distribution<double> draw(-most_px, most_px);
   for (BoardView& view : o.views) {
     if (view.camera != 1) continue;
-    const Eigen::Vector2d by(draw(random), draw(random));
+    const Eigen::Vector2d by{draw(random), draw(random)};
     for (Eigen::Vector2d& p : view.pixels_px) p += by;
   }
   return o;

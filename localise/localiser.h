@@ -83,7 +83,8 @@ struct LocaliserOptions {
   std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate
   int candidates = 256;         ///< of the best-ranked poses; `lines` tries 16 of them first
   int min_lines = 3;            ///< minimum number of lines in space for an answer
-  /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
+  /// `lines` abstains (unsure) where an error is more probable than this; 1: an answer is never
+  /// unsure.
   double max_error_rate = 0.01;
   /// What `lines` takes for the probability that the robot stands where the map holds nothing,
   /// before it looks; below 1. 0: it is on the map.

@@ -195,7 +195,7 @@ void add_localise(CLI::App& app, Session& session) {
   verb->add_option("--candidates", o->localiser.candidates, "best-ranked poses to verify")
       ->capture_default_str();
   verb->add_option("--max-error-rate", o->localiser.max_error_rate,
-                   "of lines: unsure where an error is more probable; 1: it always answers")
+                   "of lines: unsure where an error is more probable; 1: an answer is never unsure")
       ->capture_default_str();
   verb->add_option("--off-map", o->localiser.off_map,
                    "of lines: probability that the robot is where the map holds nothing; 0: never")

@@ -49,6 +49,7 @@ void print(const Study& study, const fs::path& folder, Session& session) {
   tell_failed_trials(results, session);
   tell_shared_views(study, session);
   tell_failed_calibrations(results, session);
+  tell_unseen_worlds(results, session);
   tell_understated_errors(results, session);
   tell_changed_programs(results, session);
   session.result(study_json(study, results), study_table(study, results));

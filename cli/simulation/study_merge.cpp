@@ -128,6 +128,7 @@ void merge_studies(const std::vector<fs::path>& parts,
   }
   tell_failed_trials(results, session);
   tell_failed_calibrations(results, session);
+  tell_unseen_worlds(results, session);
   tell_understated_errors(results, session);
   session.result(study_json(study, results), study_table(study, results));
 }

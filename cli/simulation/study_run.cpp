@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -124,6 +125,32 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
                           sources.calibration)
             : "vernier localise with the same settings says why"));
   }
+}
+
+namespace {
+
+/// Whether the robot saw too little in every trial for a localiser to begin.
+bool sees_nothing(const CellResult& cell) {
+  const std::vector<TrialResult>& trials = cell.trials;
+  return cell.cell.system.is_localiser() && !trials.empty() &&
+         std::all_of(trials.begin(), trials.end(), [](const TrialResult& trial) {
+           return trial.status == LocalisationStatus::too_few_lines ||
+                  trial.status == LocalisationStatus::too_few_corners;
+         });
+}
+
+}  // namespace
+
+void tell_unseen_worlds(const StudyResults& results, Session& session) {
+  const auto first = std::find_if(results.cells.begin(), results.cells.end(), sees_nothing);
+  if (first == results.cells.end()) return;
+  const auto cells = std::count_if(first, results.cells.end(), sees_nothing);
+  const std::string text = fmt::format(
+      "too little was seen in every trial of cell \"{}\"{} to localise the robot: check the route, "
+      "the world, the rig and the camera's height (vernier simulate --world shows what is seen)",
+      first->cell.label, cells > 1 ? fmt::format(" and of {} more", cells - 1) : "");
+  const bool all = static_cast<std::size_t>(cells) == results.cells.size();
+  all ? session.add_trust_warning(text) : session.warn(text);
 }
 
 namespace {

@@ -26,6 +26,10 @@ void tell_failed_trials(const StudyResults& results, Session& session);
 /// true rig where it is of all of them: they err by less than fresh ones.
 void tell_shared_views(const Study& study, Session& session);
 
+/// Says in which cells nothing that localises was seen in any trial; where that is so in all of
+/// them, a reason not to trust them.
+void tell_unseen_worlds(const StudyResults& results, Session& session);
+
 /// Says in which cells more answers are wrong than the localiser states, by more than chance: at
 /// least twice as many at 98 % confidence.
 void tell_understated_errors(const StudyResults& results, Session& session);

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 #include "calib/error.h"
@@ -41,6 +43,31 @@ std::vector<Eigen::Vector2d> blocked_ones(const World& world,
   return blocked;
 }
 
+/// Of all that is in the world; infinite if nothing is.
+double lowest_m(const World& world) {
+  double low = std::numeric_limits<double>::infinity();
+  for (const WorldSegment& segment : world.segments) {
+    low = std::min({low, segment.a_m.z(), segment.b_m.z()});
+  }
+  for (const WorldSurface& surface : world.surfaces) {
+    for (const Eigen::Vector3d& point : surface.polygon_m) low = std::min(low, point.z());
+  }
+  return low;
+}
+
+/// The route of a world that is not on the floor: `blocked` is the share of it where robots cannot
+/// stand. One that begins above robots is no building for them at all.
+RouteFault floor_fault(const World& world, double blocked, double eye_height_m) {
+  constexpr double on_floor_m = 0.25;
+  const double low_m = lowest_m(world);
+  if (!(low_m > on_floor_m) || std::isinf(low_m)) return {};
+  return {fmt::format("lies below all of the world, which begins at z = {:.3g} m, and robots drive "
+                      "at z = 0",
+                      low_m),
+          "if that is its floor, shift the world down",
+          low_m > eye_height_m + robot_top_m ? 1 : blocked};
+}
+
 }  // namespace
 
 BlockedRoute blocked_route(const World& world, double eye_height_m) {
@@ -59,6 +86,9 @@ BlockedRoute blocked_route(const World& world, double eye_height_m) {
 
 RouteFault route_fault(const World& world, double eye_height_m) {
   const BlockedRoute route = blocked_route(world, eye_height_m);
+  if (route.places == 0) return {};
+  if (RouteFault fault = floor_fault(world, route.share(), eye_height_m); !fault.fault.empty())
+    return fault;
   if (route.blocked == 0) return {};
   if (route.is_too_high) {
     return {fmt::format("passes under what is lower than {:g} m everywhere, {:g} m above a camera "
@@ -67,7 +97,7 @@ RouteFault route_fault(const World& world, double eye_height_m) {
             "lower the camera", route.share()};
   }
   return {
-      fmt::format("leads through something in {:.2g} % of its length, first at ({:.2f}, {:.2f}) "
+      fmt::format("leads through something in {:.3g} % of its length, first at ({:.2f}, {:.2f}) "
                   "m: a robot of {:g} m radius cannot stand there",
                   100 * route.share(), route.first_m.x(), route.first_m.y(), robot_radius_m),
       "move the route (vernier world route proposes one)", route.share()};

@@ -140,10 +140,11 @@ BoardView cut_view(const SimulatedBoard& board, const BoardView& whole) {
       Eigen::Vector3d x = rig.T_camera_first[c] *
                           (board.truth.T_first_board[static_cast<std::size_t>(whole.frame)] * X);
       x.x() += move_m;
-      const Eigen::Vector2d pixel = project(rig.cameras[c], x);
+      const Eigen::Vector2d noise{draws.normal(), draws.normal()};
+      const Eigen::Vector2d pixel = project(rig.cameras[c], x) + 0.2 * noise;
       if (!in_image(rig.cameras[c], pixel)) continue;
       cut.ids.push_back(id);
-      cut.pixels_px.emplace_back(pixel + 0.2 * Eigen::Vector2d{draws.normal(), draws.normal()});
+      cut.pixels_px.push_back(pixel);
     }
     if (2 * cut.ids.size() < whole.ids.size()) return cut;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/blocked_route.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -55,6 +56,28 @@ TEST(BlockedRoute, SaysThatACameraIsTooHigh) {
   const RouteFault route = route_fault(test::small_office(), 2.4);
   EXPECT_NE(route.fault.find("lower than 2.6 m everywhere"), std::string::npos) << route.fault;
   EXPECT_EQ(route.remedy, "lower the camera");
+}
+
+TEST(BlockedRoute, SaysThatAWorldIsAboveTheFloor) {
+  const auto raised = [](double by_m) {
+    World world = test::small_office();
+    for (WorldSegment& segment : world.segments) {
+      segment.a_m.z() += by_m;
+      segment.b_m.z() += by_m;
+    }
+    for (WorldSurface& surface : world.surfaces) {
+      for (Eigen::Vector3d& point : surface.polygon_m) point.z() += by_m;
+    }
+    return world;
+  };
+  EXPECT_TRUE(route_fault(raised(0.07), 1.2).fault.empty());
+  for (const double by_m : {0.3, 1.0, 1.5, 3.2}) {
+    const RouteFault route = route_fault(raised(by_m), 1.2);
+    EXPECT_NE(route.fault.find(fmt::format("begins at z = {:g} m", by_m)), std::string::npos)
+        << route.fault;
+    EXPECT_NE(route.remedy.find("shift the world down"), std::string::npos);
+    EXPECT_GT(route.share, 0.9) << by_m;
+  }
 }
 
 TEST(BlockedRoute, NeedsARoute) { EXPECT_EQ(blocked_route(with_route({}), 1.2).places, 0); }

@@ -23,10 +23,10 @@ struct Rectification {
 Rectification rectification(const Rig& rig);
 
 /// Angle between a left-image segment and the epipolar direction in the rectified image; radians in
-/// [0, pi/2].
-double epipolar_angle_rad(const Rig& rig,
-                          const Rectification& rectification,
-                          const ImageSegment& left);
+/// [0, pi/2]. Nothing if an end has no ray (try_unproject).
+std::optional<double> epipolar_angle_rad(const Rig& rig,
+                                         const Rectification& rectification,
+                                         const ImageSegment& left);
 
 struct RectifiedGeometryOptions {
   Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: that of the left camera

@@ -120,6 +120,10 @@ void for_each_simulated_drive(const OdometryOptions& options,
   const Eigen::MatrixXd calibration =
       settings.sources.calibration * settings.sources.calibration * covariance_of(rig);
   const World world = build_world(read_world(find_world(options.world)));
+  if (world.corners.empty()) {
+    throw Error(options.world, "has no corners, by which odometry finds the steps",
+                "add corners_m (docs/file-formats.md)");
+  }
   const std::vector<Pose2D> poses =
       drive_poses(chosen_leg(world, options), options.step_m, options.turn_deg * degree);
   const Visibility visibility(world);

@@ -219,7 +219,7 @@ std::vector<double> parse_numbers(const std::string& text,
     throw Error(option,
                 in_quotes(text) + " is not " +
                     (n == 1 ? std::string("a number") : std::to_string(n) + " numbers"),
-                "separate the numbers by commas");
+                "separate the numbers by commas, without blanks");
   }
   return values;
 }

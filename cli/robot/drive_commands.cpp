@@ -63,7 +63,7 @@ bool header_of_wheels(std::string_view line, const std::string& place) {
   for (std::size_t form = 0; form < forms.size(); ++form) {
     if (std::equal(names.begin(), names.end(), forms[form].begin(), forms[form].end())) return form;
   }
-  throw Error(place, "begins neither with a header nor with JSON", remedy);
+  throw Error(place, "begins neither with all columns of a command nor with JSON", remedy);
 }
 
 DriveCommand command_of_csv(std::string_view line,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "sim/sources.h"
 #include "sim/sources/source_factories.h"
@@ -15,6 +16,7 @@ using namespace stereo;
 namespace {
 
 /// The ±5° rule: stereo cannot localise edges along their epipolar line. One eye still sees them.
+/// Nor those with an end that another source has moved beyond the lens's field.
 class EpipolarRejection : public UncertaintySource {
  public:
   explicit EpipolarRejection(const SourceSettings& s)
@@ -23,9 +25,10 @@ class EpipolarRejection : public UncertaintySource {
 
   void apply(const SensingContext& context, SensedView& view) const override {
     for (SensedEdge& edge : view.edges) {
-      edge.in_stereo =
-          edge.in_stereo && epipolar_angle_rad(context.rig, context.rectification,
-                                               image_of(context.rig, edge, 0)) >= min_rad_;
+      if (!edge.in_stereo) continue;
+      const std::optional<double> angle_rad =
+          epipolar_angle_rad(context.rig, context.rectification, image_of(context.rig, edge, 0));
+      edge.in_stereo = angle_rad && *angle_rad >= min_rad_;
     }
   }
 

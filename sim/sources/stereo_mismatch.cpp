@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 
 #include "calib/camera.h"
 #include "calib/statistics/draw_sources.h"
@@ -40,13 +41,16 @@ class StereoMismatch : public UncertaintySource {
   }
 
  private:
-  /// Displacement of a right pixel when its rectified column changes by `slip` pixels.
+  /// Displacement of a right pixel when its rectified column changes by `slip` pixels; none where
+  /// it has no ray in front of the rectified camera.
   static Eigen::Vector2d along_epipolar(const SensingContext& context,
                                         const Eigen::Vector2d& pixel,
                                         double slip) {
     const Camera& right = context.rig.cameras[1];
     const Eigen::Matrix3d& R = context.rectification.R_rectified_right;
-    Eigen::Vector3d ray = R * unproject(right, pixel);
+    const std::optional<Eigen::Vector3d> seen = try_unproject(right, pixel);
+    if (!seen || !((R * *seen).z() > 0)) return Eigen::Vector2d::Zero();
+    Eigen::Vector3d ray = R * *seen;
     ray /= ray.z();
     ray.x() += slip / right.f_px();
     return project(right, R.transpose() * ray) - pixel;

@@ -79,8 +79,8 @@ ViewLikelihood::Seen ViewLikelihood::seen(const VisibleEdge& edge) const {
   result.side = n.dot(edge.object_centre_m) > 0 ? -1 : 1;
   result.object = edge.object;
   result.right_by_left = right_by_left_shift(rig_, edge.a_m, edge.b_m);
-  const double slope_deg =
-      epipolar_angle_rad(rig_, rectification_, result.image[0]) * 180 / std::numbers::pi;
+  const double slope_deg = epipolar_angle_rad(rig_, rectification_, result.image[0]).value_or(0) *
+                           180 / std::numbers::pi;
   result.certain = slope_deg > sources_.epipolar_reject_deg + 3 &&
                    (1 - sources_.edge_loss) * result.image[0].length_px() > 2.5 * min_length_px_;
   return result;

@@ -35,14 +35,17 @@ Rectification rectification(const Rig& rig) {
   return result;
 }
 
-double epipolar_angle_rad(const Rig& rig,
-                          const Rectification& rectification,
-                          const ImageSegment& left) {
-  const auto rectified = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = rectification.R_rectified_left * unproject(rig.cameras[0], pixel);
+std::optional<double> epipolar_angle_rad(const Rig& rig,
+                                         const Rectification& rectification,
+                                         const ImageSegment& left) {
+  const auto a = try_unproject(rig.cameras[0], left.a_px);
+  const auto b = try_unproject(rig.cameras[0], left.b_px);
+  if (!a || !b) return std::nullopt;
+  const auto rectified = [&](const Eigen::Vector3d& ray_left) -> Eigen::Vector2d {
+    const Eigen::Vector3d ray = rectification.R_rectified_left * ray_left;
     return ray.head<2>() / ray.z();
   };
-  const Eigen::Vector2d d = rectified(left.b_px) - rectified(left.a_px);
+  const Eigen::Vector2d d = rectified(*b) - rectified(*a);
   return std::atan2(std::abs(d.y()), std::abs(d.x()));
 }
 

@@ -261,6 +261,37 @@ TEST_F(Sources, EndpointErrorMovesEndsOnly) {
   EXPECT_GT(sum, 0);
 }
 
+// Of a lens whose image ends at 90 degrees, noise moves ends of lines there beyond it: they are
+// lost to stereo, and nothing fails.
+TEST_F(Sources, EndsBeyondTheFieldOfAWideLensAreLost) {
+  Rig wide = test::nominal_rig().rig;
+  for (Camera& camera : wide.cameras) {
+    camera.model = Fisheye4{};
+    camera.parameters.resize(8);
+    camera.parameters << 180, 1, 319.5, 239.5, 0, 0, 0, 0;
+  }
+  SourceSettings settings;
+  settings.endpoint_sigma_px = 3;
+  settings.stereo_mismatch = 0.5;
+  const Sensor sensor(wide, settings, 1e-6);
+  int beyond = 0;
+  for (const Pose2D& pose : map_poses(test::small_office().route, 1)) {
+    const NoiseFreeView view = look(test::small_office_visibility(), wide, pose);
+    for (std::uint32_t trial = 0; trial < 5; ++trial) {
+      const StereoObservation seen = sensor.sense(view, {.seed = 8, .trial = trial});
+      for (const ImageSegment& s : seen.left_only) {
+        beyond +=
+            !try_unproject(wide.cameras[0], s.a_px) || !try_unproject(wide.cameras[0], s.b_px);
+      }
+      for (const StereoSegment& s : seen.segments) {
+        EXPECT_TRUE(try_unproject(wide.cameras[0], s.left.a_px));
+        EXPECT_TRUE(try_unproject(wide.cameras[0], s.left.b_px));
+      }
+    }
+  }
+  EXPECT_GT(beyond, 0);
+}
+
 TEST_F(Sources, EpipolarRejectionDropsFlatLinesOnly) {
   SourceSettings settings = no_sources();
   settings.epipolar_reject_deg = 5;

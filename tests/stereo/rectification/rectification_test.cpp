@@ -6,6 +6,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "tests/support/scenes.h"
 
@@ -39,10 +40,18 @@ TEST(Rectification, EpipolarAngleOfLinesAlongAndAcrossTheBaseline) {
     const auto pixel = [&](double t) -> Eigen::Vector2d {
       return project(rig.cameras[0], middle + t * direction);
     };
-    return epipolar_angle_rad(rig, r, {pixel(-0.2), pixel(0.2)});
+    return epipolar_angle_rad(rig, r, {pixel(-0.2), pixel(0.2)}).value();
   };
   EXPECT_NEAR(angle(baseline.normalized()), 0, 1e-12);
   EXPECT_NEAR(angle({0, 1, 0}), M_PI / 2, 0.05);
+}
+
+TEST(Rectification, NoEpipolarAngleBeyondTheField) {
+  const Rig rig = test::stereo_rig(Fisheye4{});
+  const Rectification r = rectification(rig);
+  const Eigen::Vector2d middle = rig.cameras[0].centre();
+  EXPECT_TRUE(epipolar_angle_rad(rig, r, {middle, middle + Eigen::Vector2d(9, 9)}));
+  EXPECT_FALSE(epipolar_angle_rad(rig, r, {middle, middle + Eigen::Vector2d(1e6, 9)}));
 }
 
 TEST(Rectification, NoBaselineIsRefused) {

@@ -16,6 +16,8 @@
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
+#include "localise/localiser.h"
+#include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"

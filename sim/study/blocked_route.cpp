@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 #include "calib/error.h"
@@ -43,12 +41,9 @@ std::vector<Eigen::Vector2d> blocked_ones(const World& world,
   return blocked;
 }
 
-/// Of all that is in the world; infinite if nothing is.
-double lowest_m(const World& world) {
-  double low = std::numeric_limits<double>::infinity();
-  for (const WorldSegment& segment : world.segments) {
-    low = std::min({low, segment.a_m.z(), segment.b_m.z()});
-  }
+/// 0 of a world without segments.
+double lowest_point_m(const World& world) {
+  double low = extent(world).low_m.z();
   for (const WorldSurface& surface : world.surfaces) {
     for (const Eigen::Vector3d& point : surface.polygon_m) low = std::min(low, point.z());
   }
@@ -59,8 +54,8 @@ double lowest_m(const World& world) {
 /// stand. One that begins above robots is no building for them at all.
 RouteFault floor_fault(const World& world, double blocked, double eye_height_m) {
   constexpr double on_floor_m = 0.25;
-  const double low_m = lowest_m(world);
-  if (!(low_m > on_floor_m) || std::isinf(low_m)) return {};
+  const double low_m = lowest_point_m(world);
+  if (!(low_m > on_floor_m)) return {};
   return {fmt::format("lies below all of the world, which begins at z = {:.3g} m, and robots drive "
                       "at z = 0",
                       low_m),

@@ -189,8 +189,8 @@ class Drive(verb_calls.ProgramCase):
             self.assertIn(why, said)
         for text, why in (('speed_mps,turn_radps,duration_s\nnan,0,1\n', 'bad.csv:2'),
                           ('speed_mps,turn_radps,duration_s\n0.1,0\n', 'has not 3 fields'),
-                          ('speed,turn,time\n0.1,0,1\n', 'neither with a header nor with JSON'),
-                          ('0.1,0,1\n', 'neither with a header nor with JSON'), ('', 'holds no command'),
+                          ('speed,turn,time\n0.1,0,1\n', 'neither with all columns of a command nor with JSON'),
+                          ('0.1,0,1\n', 'neither with all columns of a command nor with JSON'), ('', 'holds no command'),
                           ('speed_mps,turn_radps,duration_s\n', 'holds no command')):
             (self.folder / 'bad.csv').write_text(text)
             self.assertIn(why, self.refused('--commands', 'bad.csv'))

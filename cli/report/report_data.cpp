@@ -23,6 +23,7 @@
 #include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "sim/study/cell_comparison.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"

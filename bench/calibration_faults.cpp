@@ -271,7 +271,8 @@ std::vector<CalibrationFault> time_faults() {
        [](auto& c, double s, auto& random) {
          for (auto& view : c.observations.views) {
            if (view.camera != 1) continue;
-           const Eigen::Vector2d by(uniform(random, -s, s), uniform(random, -s, s));
+           const double y = uniform(random, -s, s), x = uniform(random, -s, s);
+           const Eigen::Vector2d by(x, y);
            for (auto& p : view.pixels_px) p += by;
          }
          keep_inside(c.observations);

@@ -23,7 +23,8 @@ struct Rectification {
 Rectification rectification(const Rig& rig);
 
 /// Angle between a left-image segment and the epipolar direction in the rectified image; radians in
-/// [0, pi/2]. Nothing if an end has no ray (try_unproject).
+/// [0, pi/2]. Nothing if an end has no ray (try_unproject), or one behind
+/// the rectified camera.
 std::optional<double> epipolar_angle_rad(const Rig& rig,
                                          const Rectification& rectification,
                                          const ImageSegment& left);

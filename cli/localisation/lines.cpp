@@ -29,6 +29,7 @@
 #include "cli/simulation/floor_poses.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
+#include "localise/views/camera_poses.h"
 #include "localise/views/depth_view.h"
 #include "localise/views/image_names.h"
 #include "localise/views/segments_file.h"
@@ -185,6 +186,21 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
                         options.output));
 }
 
+/// Names by which the readers of segments find the images' poses.
+std::vector<std::string> names_in_segments(const LinesArguments& options,
+                                           const std::vector<std::filesystem::path>& images) {
+  std::vector<std::string> of_poses;
+  if (!options.segments.empty() && !options.poses.empty()) {
+    for (const CameraPose& pose : read_poses_of_camera(options.poses).poses) {
+      of_poses.push_back(pose.image);
+    }
+  }
+  if (!need_folders(of_poses)) return distinct_names(images);
+  std::vector<std::string> names;
+  for (const auto& image : images) names.push_back(std::filesystem::absolute(image).string());
+  return names;
+}
+
 void run(const LinesArguments& options, const CLI::App& verb, Session& session) {
   check(options, verb);
   const std::vector<ImageFiles> files = images_with_depths(options.image, options.depth, session);
@@ -192,7 +208,7 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
   const Camera camera = camera_of(options, files.front().left.string(), session);
   const auto rig = std::make_shared<const Rig>(rig_of({{camera, Pose{}}}));
   const std::vector<Stance> all = stances(options, files);
-  const std::vector<std::string> names = distinct_names(left_images(files));
+  const std::vector<std::string> names = names_in_segments(options, left_images(files));
   OutputFiles outputs;
   FileInProgress& views = outputs.add(options.output);
   FileInProgress* const segments_file = outputs.add_wanted(options.segments);

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,17 +24,26 @@ const CLI::App& named_verb(const CLI::App& app) {
   return named.empty() ? app : named_verb(*named.back());
 }
 
-/// What may stand in the place of a word: the verb's options, or verbs.
+/// What may stand in the place of a word: the verb's options, without dashes, or verbs.
 std::vector<std::string> expected_words(const CLI::App& verb, bool options) {
   std::vector<std::string> words;
   if (options) {
     for (const CLI::Option* option : verb.get_options()) {
-      for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+      for (const std::string& name : option->get_lnames()) words.push_back(name);
     }
   } else {
     for (const CLI::App* other : verb.get_subcommands({})) words.push_back(other->get_name());
   }
   return words;
+}
+
+/// The word that was probably meant: the only one that begins so, or one that is near.
+std::optional<std::string> meant_by(std::string_view word,
+                                    const std::vector<std::string>& expected) {
+  const auto begins = [&](const std::string& other) { return other.starts_with(word); };
+  const auto first = std::ranges::find_if(expected, begins);
+  if (!word.empty() && std::ranges::count_if(expected, begins) == 1) return *first;
+  return near_word(word, {expected.begin(), expected.end()});
 }
 
 /// An unquoted pattern is expanded by the shell.
@@ -60,12 +70,14 @@ std::string unexpected_words(const CLI::App& app) {
   std::string text = "unexpected argument " + in_quotes(words.front());
   if (words.size() > 1) text += fmt::format(" and {} more", words.size() - 1);
   const bool option = words.front().starts_with('-');
-  const std::string_view word = std::string_view(words.front()).substr(0, words.front().find('='));
-  const std::vector<std::string> expected = expected_words(named_verb(app), option);
+  const std::size_t dashes = option ? words.front().find_first_not_of('-') : 0;
+  std::string_view word = words.front();
+  word = word.substr(std::min(dashes, word.size()));
+  word = word.substr(0, word.find('='));
   if (are_files(words)) {
     text += "; quote the pattern, for example 'left*.png'";
-  } else if (const auto meant = near_word(word, {expected.begin(), expected.end()})) {
-    text += "; did you mean '" + *meant + "'?";
+  } else if (const auto meant = meant_by(word, expected_words(named_verb(app), option))) {
+    text += std::string("; did you mean '") + (option ? "--" : "") + *meant + "'?";
   }
   return text + where_help_is(app);
 }

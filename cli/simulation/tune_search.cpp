@@ -153,6 +153,7 @@ StudyResults confirm(const Tuning& tuning,
   StudyResults results = study_results(study, folder);
   tell_failed_trials(results, session);
   tell_failed_calibrations(results, session);
+  tell_unseen_worlds(results, session);
   return results;
 }
 

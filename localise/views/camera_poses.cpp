@@ -111,9 +111,10 @@ CameraPoses read_matrices(const std::filesystem::path& file) {
         !(M.determinant() > 0) || T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
       throw Error(place, "is not a pose [R t; 0 0 0 1]", "give camera to world, by rows");
     }
-    std::string name(fields[0]);
-    if (name.empty() || !names.insert(name).second) {
-      throw Error(place, name.empty() ? "names no image" : "names its image a second time",
+    std::string name = std::filesystem::path(fields[0]).lexically_normal().string();
+    const bool is_file = !std::filesystem::path(name).filename().empty();
+    if (!is_file || !names.insert(name).second) {
+      throw Error(place, is_file ? "names its image a second time" : "names no image",
                   "name each image once");
     }
     if (read.poses.size() == most_poses) {

@@ -59,10 +59,8 @@ std::map<std::int64_t, std::size_t> numbered(const Paths& files) {
 
 /// The maps of equal names or numbers; empty where an image has none.
 Paths by_name(const Paths& images, const Paths& maps, const std::string& place) {
-  std::vector<std::string> names;
-  for (const Path& map : maps) names.push_back(map.string());
   Paths found;
-  for (const auto& map : names_of_images(names, images, place)) {
+  for (const auto& map : files_of_images(maps, images, place)) {
     found.push_back(map ? maps[*map] : Path());
   }
   const auto of_maps = numbered(maps);

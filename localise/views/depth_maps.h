@@ -20,7 +20,7 @@ std::vector<std::filesystem::path> depth_maps_by_time(
     const std::vector<std::filesystem::path>& maps);
 
 /// The depth map of each image, wherever they stand in the list `maps`, which may hold others: by
-/// time where all are named by it; else of the same name (names_of_images), or of the same last
+/// time where all are named by it; else of the same name (files_of_images), or of the same last
 /// number where all have one of their own. Only where no image finds its map so, and there are as
 /// many, they belong together in order. Throws Error(`place`) naming an image that has none.
 std::vector<std::filesystem::path> depth_maps_of_images(

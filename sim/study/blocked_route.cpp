@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 #include "calib/error.h"
@@ -41,26 +43,27 @@ std::vector<Eigen::Vector2d> blocked_ones(const World& world,
   return blocked;
 }
 
-/// 0 of a world without segments.
+/// Infinite of an empty world.
 double lowest_point_m(const World& world) {
-  double low = extent(world).low_m.z();
+  double low = world.segments.empty() ? std::numeric_limits<double>::infinity()
+                                      : extent(world).low_m.z();
   for (const WorldSurface& surface : world.surfaces) {
     for (const Eigen::Vector3d& point : surface.polygon_m) low = std::min(low, point.z());
   }
   return low;
 }
 
-/// The route of a world that is not on the floor: `blocked` is the share of it where robots cannot
-/// stand. One that begins above robots is no building for them at all.
+/// Of a world that lies above robots, which is no building for them, or so far above the floor that
+/// they can stand hardly anywhere.
 RouteFault floor_fault(const World& world, double blocked, double eye_height_m) {
-  constexpr double on_floor_m = 0.25;
+  constexpr double on_floor_m = 0.25, nearly_all = 0.99;
   const double low_m = lowest_point_m(world);
-  if (!(low_m > on_floor_m)) return {};
+  const bool is_above = low_m > eye_height_m + robot_top_m;
+  if (std::isinf(low_m) || !(is_above || (low_m > on_floor_m && blocked > nearly_all))) return {};
   return {fmt::format("lies below all of the world, which begins at z = {:.3g} m, and robots drive "
                       "at z = 0",
                       low_m),
-          "if that is its floor, shift the world down",
-          low_m > eye_height_m + robot_top_m ? 1 : blocked};
+          "if that is its floor, shift the world down", 1};
 }
 
 }  // namespace

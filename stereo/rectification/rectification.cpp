@@ -41,11 +41,10 @@ std::optional<double> epipolar_angle_rad(const Rig& rig,
   const auto a = try_unproject(rig.cameras[0], left.a_px);
   const auto b = try_unproject(rig.cameras[0], left.b_px);
   if (!a || !b) return std::nullopt;
-  const auto rectified = [&](const Eigen::Vector3d& ray_left) -> Eigen::Vector2d {
-    const Eigen::Vector3d ray = rectification.R_rectified_left * ray_left;
-    return ray.head<2>() / ray.z();
-  };
-  const Eigen::Vector2d d = rectified(*b) - rectified(*a);
+  const Eigen::Vector3d from = rectification.R_rectified_left * *a;
+  const Eigen::Vector3d to = rectification.R_rectified_left * *b;
+  if (!(from.z() > 0) || !(to.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d d = to.head<2>() / to.z() - from.head<2>() / from.z();
   return std::atan2(std::abs(d.y()), std::abs(d.x()));
 }
 

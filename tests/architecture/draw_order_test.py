@@ -7,8 +7,8 @@ sides of an overloaded operator, are exchanged between GCC and Clang.
 
     draw_order_test.py [FILE…]
 
-Lists in braces are evaluated from left to right. What draws through a lambda of another name is not
-seen; the same figures from both compilers are the proof.
+Lists in braces are evaluated from left to right. What draws through a lambda, or on both sides of an
+operator of vectors, is not seen; the same figures from both compilers are the proof.
 """
 import re
 import sys
@@ -16,7 +16,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("calib", "stereo", "localise", "sim", "cli", "datasets", "tests", "bench", "fuzz")
-DRAW = re.compile(r"(?:\.|->)(?:uniform|normal|normals|below)\(|\b(?:uniform|normal|gauss)\w*\((?:draws?|random|chance|engine|rng)\)")
+METHOD = r"(?:\.|->)(?:uniform|normal|normals|below)\("
+STREAM = re.compile(r"\b(?:RandomStream|Random|mt19937(?:_64)?)\s*&?\s+(\w+)")
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 
 
@@ -26,7 +27,7 @@ def blank(match):
 
 
 def lists_in_parentheses(text):
-    """Begin and the arguments of every list in parentheses, each without what braces hold."""
+    """Begin and the arguments of every list in parentheses."""
     stack = []
     for at, c in enumerate(text):
         if c in "([{":
@@ -40,18 +41,29 @@ def lists_in_parentheses(text):
                 yield begin, [text[a + 1:b] for a, b in zip(ends, ends[1:])]
 
 
-def draws_in(argument):
+def draw_pattern(text):
+    """What draws in a file: methods of streams, and calls that are given a stream or that are a
+    distribution's."""
+    forms = [METHOD]
+    streams = {name for name in STREAM.findall(text) if len(name) > 1}  # others are short for much else
+    if streams:
+        forms.append(rf"\b\w+\((?:[^()]*,\s*)?(?:{'|'.join(sorted(streams))})\s*[,)]")
+    return re.compile("|".join(forms))
+
+
+def draws_in(argument, draw):
     """Whether an argument draws when it is evaluated: not in the body of a lambda."""
-    body = re.search(r"\[[^\]]*\]\s*(?:\([^)]*\))?\s*(?:->\s*[\w:<>]+\s*)?\{", argument)
-    return bool(DRAW.search(argument[:body.start()] if body else argument))
+    return bool(draw.search(re.sub(
+        r"\[[^\[\]]*\]\s*(?:\([^()]*\))?\s*(?:->\s*[\w:<>]+\s*)?\{.*\}", "", argument, flags=re.S)))
 
 
 def faults_of(text):
     text = COMMENT_OR_TEXT.sub(blank, text)
+    draw = draw_pattern(text)
     for begin, arguments in lists_in_parentheses(text):
         if re.search(r"\b(?:for|if|while|switch)\s*(?:constexpr\s*)?$", text[max(0, begin - 20):begin]):
             continue
-        if sum(draws_in(argument) for argument in arguments) > 1:
+        if sum(draws_in(argument, draw) for argument in arguments) > 1:
             yield text.count("\n", 0, begin) + 1
 
 

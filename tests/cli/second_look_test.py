@@ -246,7 +246,9 @@ class WrongThing(cli_test.Case):
                 (('world', 'inof', 'office'), "\"inof\" and 1 more; did you mean 'info'?"),
                 (('world', 'info', 'office', '--quite-different'),
                  '"--quite-different" (see vernier world info --help)'),
-                (('calibrate', '--bord', '9x6'), "did you mean '--board'? (see vernier calibrate")):
+                (('calibrate', '--bord', '9x6'), "did you mean '--board'? (see vernier calibrate"),
+                (('simulate', '--wor', 'office'), "did you mean '--world'?"),
+                (('simulate', '--xy', '3'), '"--xy" and 1 more (see vernier simulate --help)')):
             self.complains(*words, of=meant)
 
     def test_the_table_says_where_its_corners_are(self):

@@ -106,7 +106,8 @@ TEST(ExpectedCoefficient, IsTheMeanOverTrials) {
     const int trials = 2000;
     double sum = 0, squares = 0;
     for (int i = 0; i < trials; ++i) {
-      const double b = bhattacharyya_coefficient(counts(c.n_p), counts(c.n_q));
+      const Eigen::VectorXd one = counts(c.n_p), other = counts(c.n_q);
+      const double b = bhattacharyya_coefficient(one, other);
       sum += b;
       squares += b * b;
     }

@@ -97,7 +97,7 @@ TEST(CameraPoses, NamedPosesAreFoundByName) {
     EXPECT_NE(said.find("has no pose of \"00001.png\""), std::string::npos) << said;
   }
   const CameraPoses of_folder = read_camera_poses(folder.path());
-  EXPECT_EQ(of_folder.poses[1].image, "00003.png");
+  EXPECT_EQ(of_folder.poses[1].image, "walk/00003.png");
   expect_same(of_folder.poses[1].T_world_camera, poses[1]);
 }
 

@@ -8,3 +8,7 @@ const double x = draws.normal(), y = draws.normal();
 for (int i = draws.below(3); i < 9; i += draws.below(3)) use(draws.normal());
 use(draws.normal(), [&] { return draws.normal(); });
 // f(draws.normal(), draws.normal())
+
+double placed(RandomStream& stream, double low) {
+  return f(direction(stream), distance(low, stream)) + g(direction(stream), low);
+}

@@ -117,7 +117,7 @@ TEST_F(BoardPoses, AllViewsOfAFrameDecideTogether) {
     for (int c = 0; c < 2; ++c) {
       views.push_back(seen_by(rig.cameras[c], target_m_, rig.T_camera_first[c] * pose));
       views.back().camera = c;
-      for (auto& p : views.back().pixels_px) p += Eigen::Vector2d(draw(-0.5, 0.5), draw(-0.5, 0.5));
+      for (auto& p : views.back().pixels_px) p += Eigen::Vector2d{draw(-0.5, 0.5), draw(-0.5, 0.5)};
     }
     const BoardPoseFit fit = find_board_pose(target_m_, views, rig);
     EXPECT_LT(fit.rms_px, 0.4);
@@ -191,7 +191,7 @@ BoardObservations wide_views(std::uint64_t seed) {
     Pose pose;
     pose.R = rotation_from_vector({draw(-0.6, 0.6), draw(-0.6, 0.6), draw(-0.15, 0.15)});
     const double z = draw(0.4, 1.1);
-    pose.t = Eigen::Vector3d(draw(-1.1, 1.1) * z, draw(-0.8, 0.8) * z, z) - pose.R * centre_m;
+    pose.t = Eigen::Vector3d{draw(-1.1, 1.1) * z, draw(-0.8, 0.8) * z, z} - pose.R * centre_m;
     std::vector<BoardView> views;
     bool inside = true;
     for (int c = 0; c < 2; ++c) {

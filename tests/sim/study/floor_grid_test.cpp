@@ -24,7 +24,7 @@ struct PointsOnFloor {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> about(-20, 20);
     for (int i = 0; i < 2000; ++i) {
-      points.emplace_back(x + about(random), y + about(random));
+      points.push_back({x + about(random), y + about(random)});
       grid.add(points.back(), i);
     }
   }

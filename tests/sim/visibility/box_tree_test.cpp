@@ -22,8 +22,8 @@ std::vector<AlignedBox3d> random_boxes(int count, std::mt19937& random) {
   std::uniform_real_distribution<double> place(-10, 10), size(0, 2);
   std::vector<AlignedBox3d> boxes;
   for (int i = 0; i < count; ++i) {
-    const Vector3d low(place(random), place(random), place(random));
-    boxes.emplace_back(low, low + Vector3d(size(random), size(random), size(random)));
+    const Vector3d low{place(random), place(random), place(random)};
+    boxes.emplace_back(low, low + Vector3d{size(random), size(random), size(random)});
   }
   return boxes;
 }
@@ -89,8 +89,8 @@ TEST(MeetsBox, AgreesWithPointsAlongTheSegment) {
   std::uniform_real_distribution<double> place(-3, 5);
   const AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(2, 1, 1.5));
   for (int k = 0; k < 500; ++k) {
-    Vector3d a(place(random), place(random), place(random));
-    Vector3d b(place(random), place(random), place(random));
+    Vector3d a{place(random), place(random), place(random)};
+    Vector3d b{place(random), place(random), place(random)};
     if (k % 5 == 0) b[k % 3] = a[k % 3];  // along a plane of the axes
     bool inside = false;
     for (int i = 0; i <= 1000 && !inside; ++i)

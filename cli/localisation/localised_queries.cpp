@@ -13,6 +13,7 @@
 #include "cli/program/session.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "sim/study/reliability.h"
 
 namespace vernier::cli {
 namespace {
@@ -185,7 +186,32 @@ std::string queries_csv(const std::vector<LocalisedQuery>& queries) {
   return text;
 }
 
+namespace {
+
+/// Of the answers that state their probability and whose truth is known.
+void check_stated_errors(const std::vector<LocalisedQuery>& queries, Session& session) {
+  int answers = 0, wrong = 0;
+  double stated = 0;  // sum
+  for (const LocalisedQuery& query : queries) {
+    const LocalisationAnswer& answer = query.answer;
+    if (answer.status != LocalisationStatus::answered || !answer.states_probability()) continue;
+    if (!query.truth) continue;
+    ++answers;
+    wrong += !(query.error_m() <= right_within_m);
+    stated += 1 - answer.probability;
+  }
+  if (!sim::internal::understates_errors(wrong, answers, stated / std::max(answers, 1))) return;
+  const std::string text = fmt::format(
+      "{} of {} answers are wrong, where the localiser states {:.2g} %: the map may be of another "
+      "place or of another frame of reference, or the building repeats",
+      wrong, answers, 100 * stated / answers);
+  2 * wrong > answers ? session.add_trust_warning(text) : session.warn(text);
+}
+
+}  // namespace
+
 void check_answers(const std::vector<LocalisedQuery>& queries, Session& session) {
+  check_stated_errors(queries, session);
   std::size_t answered = 0, failed = 0;
   std::string why;
   for (const LocalisedQuery& query : queries) {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "calib/board_observations.h"
-#include "calib/interval.h"
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
@@ -20,6 +19,7 @@
 #include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
@@ -177,7 +177,7 @@ void tell_understated_errors(const StudyResults& results, Session& session) {
     const int answers = static_cast<int>(std::lround(s.coverage * s.trials));
     const int wrong = answers - static_cast<int>(std::lround(s.success * s.trials));
     const double stated = stated_error_rate(cell);
-    if (answers == 0 || clopper_pearson_interval(wrong, answers, 0.98).low <= 2 * stated) continue;
+    if (!understates_errors(wrong, answers, stated)) continue;
     if (++cells > 1) continue;
     first =
         fmt::format("{} of {} answers of cell \"{}\" are wrong, where the localiser states {:g} %",

@@ -25,6 +25,11 @@ constexpr std::array<double, 13> limits{1,    0.5,  0.2,  0.1,  0.05, 0.02, 0.01
 
 }  // namespace
 
+bool understates_errors(int wrong, int answers, double stated_rate) {
+  constexpr double sure = 0.98;
+  return answers > 0 && clopper_pearson_interval(wrong, answers, sure).low > 2 * stated_rate;
+}
+
 void StatedErrors::add(const TrialResult& trial) {
   ++trials_;
   if (!std::isfinite(trial.error)) return;  // no guess

@@ -26,6 +26,10 @@ struct ThresholdFigures {
   int answered = 0, wrong = 0;
 };
 
+/// Whether more answers are wrong than a stated error rate allows, by more than chance: at least
+/// twice as many at 98 % confidence.
+bool understates_errors(int wrong, int answers, double stated_rate);
+
 /// Stated against observed error rates of best guesses, sure or not. Trials are added one by one
 /// and not kept.
 class StatedErrors {

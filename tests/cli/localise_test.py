@@ -137,6 +137,14 @@ class Localise(verb_calls.ProgramCase):
         self.assertEqual(len(rows), 7)
         self.assertAlmostEqual(float(rows[2].split(',')[2]), 20.1, delta=0.1)
 
+    def test_truth_of_another_frame_is_a_doubt(self):
+        self.map_of_rooms()
+        write(self.folder / 'q.jsonl',
+              [view(room(i), 0.1, -0.05, 0.06, pose=[20.0 * i + 500, -0.05, 0.06]) for i in range(6)])
+        found = json.loads(self.done('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal',
+                                     '--json', code=3))
+        self.assertIn('6 of 6 answers are wrong, where the localiser states', found['doubts'][0])
+
     def test_several_looks_of_a_file(self):
         self.map_of_rooms()
         turned = view(room(2), 0, 0, 0.3, turn_rad=0.3)
@@ -189,6 +197,29 @@ class Localise(verb_calls.ProgramCase):
         self.assertEqual(query['status'], 'answered')
         for found, true in zip(query['pose'], (3, -2, 90)):
             self.assertAlmostEqual(found, true, delta=1e-6)
+
+    def test_images_of_one_name_in_several_folders(self):
+        left, right = ((self.folder / f'big_{side}.pgm').read_bytes() for side in ('left', 'right'))
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        size = list(map(int, left.split(maxsplit=3)[1:3]))
+        for camera in rig['cameras']:
+            camera['size_px'] = size
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        for number in ('000', '001'):
+            folder = self.folder / 'set' / number
+            folder.mkdir(parents=True)
+            (folder / 'left.pgm').write_bytes(left)
+            (folder / 'right.pgm').write_bytes(right)
+        call = ['map', 'make', '--left', 'set/*/left.pgm', '--right', 'set/*/right.pgm', '--rig', 'rig.json',
+                '--poses', 'poses.csv', '-o', 'set.map']
+        header = 'image,x_m,y_m,heading_deg\n'
+        poses = self.folder / 'poses.csv'
+        poses.write_text(header + '001/left.pgm,5,1,0\n000/left.pgm,3,-2,90\n')
+        self.assertIn('2 nodes at 2 positions', self.done(*call))
+        poses.write_text(header + 'left.pgm,3,-2,90\n')
+        self.refused(*call, says='"left.pgm" stands for both')
+        poses.write_text(header + '000/left.pgm,3,-2,90\n002/left.pgm,3,-2,90\n')
+        self.refused(*call, says='has no pose of')
 
     def test_a_program_of_ones_own(self):
         self.map_of_rooms()

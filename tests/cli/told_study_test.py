@@ -34,6 +34,21 @@ class Told(Store):
         self.assertFalse(self.out.exists())
 
 
+class NothingSeen(Told):
+    def test_is_a_doubt(self):
+        (self.folder / 'empty.world.toml').write_text(
+            'format = "vernier/world"\nversion = 1\nname = "empty"\n[[route]]\npoints_m = [[0, 0], [3, 0]]\n')
+        self.write('[study]\ntrials = 12\n[world]\nfile = "empty.world.toml"\n')
+        doubt, = json.loads(self.run_study(code=3).stdout)['doubts']
+        self.assertIn('too little was seen in every trial of cell', doubt)
+        # One of two cells is a result, and a remark.
+        self.write('[study]\ntrials = 12\n[world]\nfile = "workshop"\n'
+                   '[sweep]\n"world.file" = ["workshop", "empty.world.toml"]\n')
+        done = self.run_study()
+        self.assertIn('too little was seen in every trial of cell', done.stderr)
+        self.assertEqual(json.loads(done.stdout).get('doubts', []), [])
+
+
 class NoCalibration(Told):
     def test_is_a_doubt_that_names_the_cell(self):
         self.write(TOLD + '[calibration]\nviews = 4\ndistance_m = 1000\n'

@@ -144,10 +144,8 @@ int main(int argc, char** argv) {
   cli::check_numbers(app);
   try {
     perform(app, session, argc, argv);
-  } catch (const CLI::ExtrasError& error) {
-    return bad_input(cli::unexpected_words(app));
   } catch (const CLI::ParseError& error) {
-    return bad_input(error.what() + cli::where_help_is(app));
+    return bad_input(cli::usage_fault(app, error));
   } catch (const Error& error) {
     return bad_input(error.what());
   } catch (const std::filesystem::filesystem_error& error) {

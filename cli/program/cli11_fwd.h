@@ -7,4 +7,5 @@
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI

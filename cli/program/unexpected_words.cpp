@@ -53,8 +53,7 @@ bool are_files(const std::vector<std::string>& words) {
          });
 }
 
-}  // namespace
-
+/// " (see vernier VERB --help)" for the verb that the command line named, if it named one.
 std::string where_help_is(const CLI::App& app) {
   const CLI::App& verb = named_verb(app);
   std::string names;
@@ -64,9 +63,7 @@ std::string where_help_is(const CLI::App& app) {
   return fmt::format(" (see vernier {}--help)", names);
 }
 
-std::string unexpected_words(const CLI::App& app) {
-  const std::vector<std::string> words = app.remaining(true);
-  if (words.empty()) return "unexpected argument" + where_help_is(app);
+std::string unexpected_words(const CLI::App& app, const std::vector<std::string>& words) {
   std::string text = "unexpected argument " + in_quotes(words.front());
   if (words.size() > 1) text += fmt::format(" and {} more", words.size() - 1);
   const bool option = words.front().starts_with('-');
@@ -79,7 +76,18 @@ std::string unexpected_words(const CLI::App& app) {
   } else if (const auto meant = meant_by(word, expected_words(named_verb(app), option))) {
     text += std::string("; did you mean '") + (option ? "--" : "") + *meant + "'?";
   }
-  return text + where_help_is(app);
+  return text;
+}
+
+}  // namespace
+
+std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left_over = app.remaining(true);
+  const bool is_cause = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                        dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  const std::string fault =
+      is_cause && !left_over.empty() ? unexpected_words(app, left_over) : error.what();
+  return fault + where_help_is(app);
 }
 
 }  // namespace vernier::cli

@@ -8,11 +8,9 @@
 
 namespace vernier::cli {
 
-/// " (see vernier VERB --help)" for the verb that the command line named, if it named one.
-std::string where_help_is(const CLI::App& app);
-
-/// The message for words of the command line that CLI11 left over: the first of them, the verb or
-/// option that was probably meant, and where the help is.
-std::string unexpected_words(const CLI::App& app);
+/// The message for a command line that CLI11 refuses, and where the help is. Words that it left
+/// over go first, with the verb or option that was probably meant: something that is required may
+/// be missing because it is misspelt.
+std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace vernier::cli

@@ -43,6 +43,8 @@ std::optional<std::string> meant_by(std::string_view word,
   const auto begins = [&](const std::string& other) { return other.starts_with(word); };
   const auto first = std::ranges::find_if(expected, begins);
   if (!word.empty() && std::ranges::count_if(expected, begins) == 1) return *first;
+  constexpr std::size_t least = 3;  // of fewer letters half are too few
+  if (word.size() < least) return std::nullopt;
   return near_word(word, {expected.begin(), expected.end()});
 }
 

@@ -37,9 +37,9 @@ using test::view_of;
 std::vector<PlaceLine> full_room(int seed) { return test::random_room(seed, 300); }
 
 /// Ten rooms side by side, 20 m apart, each seen from its middle.
-TopologicalMap ten_rooms() {
+TopologicalMap map_of_rooms(int rooms) {
   TopologicalMap map;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < rooms; ++i) {
     map.nodes.push_back({{20.0 * i, 0, 0.3 * i}, camera_view(full_room(100 + i))});
   }
   return map;
@@ -66,17 +66,24 @@ TEST(FloorPlanVotes, ALineVotesOnceForACell) {
   EXPECT_FLOAT_EQ(single[0].votes, crowd[0].votes);
 }
 
+// A ranking, whose first five are compared in full: its first is nearly always the right one.
 TEST(Panorama, FindsHeadingAndPlace) {
-  const TopologicalMap map = ten_rooms();
+  constexpr int rooms = 40;
+  const TopologicalMap map = map_of_rooms(rooms);
   const auto ranker = make_ranker("view", map, {});
-  for (int i = 0; i < 10; ++i) {
+  int first = 0, among_five = 0;
+  for (int i = 0; i < rooms; ++i) {
     const Pose2D step{0.1, 0.1, 0.15};
     const auto ranked = ranker->rank(camera_view(full_room(100 + i), step), 5);
-    ASSERT_FALSE(ranked.empty());
-    EXPECT_EQ(ranked[0].node, i);
-    EXPECT_LT(distance_m(ranked[0].query_in_node, step), 0.6);  // they lie 0.4 m apart
-    EXPECT_LT(std::abs(heading_difference_rad(ranked[0].query_in_node, step)), 0.3);
+    const auto right = std::ranges::find_if(ranked, [&](const auto& one) { return one.node == i; });
+    if (right == ranked.end()) continue;
+    ++among_five;
+    first += right == ranked.begin();
+    EXPECT_LT(distance_m(right->query_in_node, step), 0.6) << i;  // they lie 0.4 m apart
+    EXPECT_LT(std::abs(heading_difference_rad(right->query_in_node, step)), 0.3) << i;
   }
+  EXPECT_EQ(among_five, rooms);
+  EXPECT_GE(first, 36);
 }
 
 // Property: with views all around, the heading of a query turns its match by as much.
@@ -279,7 +286,7 @@ PlaceView one_upright(const TopologicalMap& map, int times, double jitter_m) {
 
 // A line fits a circle of poses, however often it is given.
 TEST(LineLocaliser, IsNotSureOfOneLine) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = map_of_rooms(10);
   const auto localiser = make_localiser("lines", map, {});
   for (const int times : {1, 3, 12, 20, 60, 300}) {
     EXPECT_NE(localiser->localise(one_upright(map, times, 0)).status, LocalisationStatus::answered)
@@ -301,11 +308,11 @@ TEST(LineLocaliser, IsNotSureOfOneLine) {
 TEST(LineLocaliser, RefusesAnErrorRateThatCannotBeStated) {
   LocaliserOptions options;
   options.max_error_rate = 1e-7;
-  EXPECT_THROW(make_localiser("lines", ten_rooms(), options), Error);
+  EXPECT_THROW(make_localiser("lines", map_of_rooms(10), options), Error);
 }
 
 TEST(LineLocaliser, FindsThePoseToMillimetres) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = map_of_rooms(10);
   const auto localiser = make_localiser("lines", map);
   for (int i = 0; i < 10; ++i) {
     const Pose2D step{0.2, -0.15, 0.12};
@@ -346,7 +353,7 @@ TEST(LineLocaliser, IsUnsureBetweenTwinsAndSaysWhereToLook) {
 }
 
 TEST(LineLocaliser, AnotherPlaceIsNotAnswered) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = map_of_rooms(10);
   const auto localiser = make_localiser("lines", map);
   for (int i = 0; i < 10; ++i) {
     const LocalisationAnswer answer = localiser->localise(camera_view(full_room(500 + i)));
@@ -356,7 +363,7 @@ TEST(LineLocaliser, AnotherPlaceIsNotAnswered) {
 
 // Every stage left out still gives an answer, a rougher one.
 TEST(LineLocaliser, StagesMayBeLeftOut) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = map_of_rooms(10);
   const Pose2D step{0.2, -0.15, 0.12};
   const PlaceView query = camera_view(full_room(104), step);
   for (int left_out = 0; left_out < 4; ++left_out) {
@@ -373,7 +380,7 @@ TEST(LineLocaliser, StagesMayBeLeftOut) {
 }
 
 TEST(LineLocaliser, StrangeViewsAreNoGuess) {
-  const TopologicalMap map = ten_rooms();
+  const TopologicalMap map = map_of_rooms(10);
   const auto localiser = make_localiser("lines", map);
   EXPECT_EQ(localiser->localise(view_of({})).status, LocalisationStatus::too_few_lines);
   auto one = test::random_room(100, 1);

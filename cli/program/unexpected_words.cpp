@@ -37,15 +37,19 @@ std::vector<std::string> expected_words(const CLI::App& verb, bool options) {
   return words;
 }
 
-/// The word that was probably meant: the only one that begins so, or one that is near.
+/// The word that was probably meant: one with one slip, the only one that begins so, or one that is
+/// near.
 std::optional<std::string> meant_by(std::string_view word,
                                     const std::vector<std::string>& expected) {
+  if (word.empty()) return std::nullopt;
+  const std::vector<std::string_view> known(expected.begin(), expected.end());
+  if (auto slip = misspelt_word(word, known)) return slip;
   const auto begins = [&](const std::string& other) { return other.starts_with(word); };
   const auto first = std::ranges::find_if(expected, begins);
-  if (!word.empty() && std::ranges::count_if(expected, begins) == 1) return *first;
+  if (std::ranges::count_if(expected, begins) == 1) return *first;
   constexpr std::size_t least = 3;  // of fewer letters half are too few
   if (word.size() < least) return std::nullopt;
-  return near_word(word, {expected.begin(), expected.end()});
+  return near_word(word, known);
 }
 
 /// An unquoted pattern is expanded by the shell.

@@ -15,8 +15,6 @@
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
-#include "localise/localiser.h"
-#include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/reliability.h"
@@ -133,12 +131,8 @@ namespace {
 
 /// Whether the robot saw too little in every trial for a localiser to begin.
 bool sees_nothing(const CellResult& cell) {
-  const std::vector<TrialResult>& trials = cell.trials;
-  return cell.cell.system.is_localiser() && !trials.empty() &&
-         std::all_of(trials.begin(), trials.end(), [](const TrialResult& trial) {
-           return trial.status == LocalisationStatus::too_few_lines ||
-                  trial.status == LocalisationStatus::too_few_corners;
-         });
+  const CellSummary& s = cell.summary;
+  return cell.cell.system.is_localiser() && s.trials > 0 && s.unseen == s.trials;
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ std::vector<Eigen::Vector2d> blocked_ones(const World& world,
 
 /// Infinite of an empty world.
 double lowest_point_m(const World& world) {
-  double low = world.segments.empty() ? std::numeric_limits<double>::infinity()
-                                      : extent(world).low_m.z();
+  double low =
+      world.segments.empty() ? std::numeric_limits<double>::infinity() : extent(world).low_m.z();
   for (const WorldSurface& surface : world.surfaces) {
     for (const Eigen::Vector3d& point : surface.polygon_m) low = std::min(low, point.z());
   }
@@ -56,7 +56,7 @@ double lowest_point_m(const World& world) {
 /// Of a world that lies above robots, which is no building for them, or so far above the floor that
 /// they can stand hardly anywhere.
 RouteFault floor_fault(const World& world, double blocked, double eye_height_m) {
-  constexpr double on_floor_m = 0.25, nearly_all = 0.99;
+  constexpr double on_floor_m = 0.02, nearly_all = 0.99;
   const double low_m = lowest_point_m(world);
   const bool is_above = low_m > eye_height_m + robot_top_m;
   if (std::isinf(low_m) || !(is_above || (low_m > on_floor_m && blocked > nearly_all))) return {};

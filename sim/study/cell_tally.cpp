@@ -61,6 +61,8 @@ void CellTally::add(const TrialResult& t) {
   cpus_ms_.push_back(t.cpu_ms);
   wall_ms_ += t.wall_ms;
   guesses_ += t.error <= t.limit;
+  cell_.summary.unseen += t.status == LocalisationStatus::too_few_lines ||
+                          t.status == LocalisationStatus::too_few_corners;
   if (t.status == LocalisationStatus::failed && cell_.summary.failed++ == 0) {
     cell_.summary.why_failed = t.failure;
   }

@@ -44,7 +44,7 @@ class NothingSeen(Told):
         # One of two cells is a result, and a remark.
         self.write('[study]\ntrials = 12\n[world]\nfile = "workshop"\n'
                    '[sweep]\n"world.file" = ["workshop", "empty.world.toml"]\n')
-        done = self.run_study()
+        done = self.works('study', self.file, '-o', self.out, '--json')
         self.assertIn('too little was seen in every trial of cell', done.stderr)
         self.assertEqual(json.loads(done.stdout).get('doubts', []), [])
 

@@ -122,7 +122,7 @@ void for_each_simulated_drive(const OdometryOptions& options,
   const World world = build_world(read_world(find_world(options.world)));
   if (world.corners.empty()) {
     throw Error(options.world, "has no corners, by which odometry finds the steps",
-                "add corners_m (docs/file-formats.md)");
+                "add corners to its templates or loose features (docs/file-formats.md)");
   }
   const std::vector<Pose2D> poses =
       drive_poses(chosen_leg(world, options), options.step_m, options.turn_deg * degree);

@@ -160,7 +160,7 @@ class Studies(Case):
 
 class Maps(Case):
     def route(self, length_m):
-        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\n'
+        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\ncorners = [[0,1,1]]\n'
                    f'[[route]]\npoints_m = [[0,0],[{length_m},0]]\n')
         return 'w.world.toml'
 
@@ -199,7 +199,7 @@ class Maps(Case):
 
 class Drives(Case):
     def test_poses(self):
-        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\n'
+        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\ncorners = [[0,1,1]]\n'
                    '[[route]]\npoints_m = [[0,0],[9000,0]]\n')
         self.refused('odometry', '--world', 'w.world.toml', '--step-m', '0.001',
                      of='has more than 100000 poses')

@@ -71,8 +71,8 @@ Rig drawn_rig(Random& random, const CameraModel& model) {
   const Eigen::Vector3d turn = 0.015 * random_vector(random);
   const double baseline = uniform(random, 0.05, 0.25);
   const double z = 0.01 * normal(random), y = 0.01 * normal(random);
-  rig.T_camera_first = {
-      Pose{}, Pose{rotation_from_vector(turn), baseline * Eigen::Vector3d(-1, y, z)}};
+  rig.T_camera_first = {Pose{},
+                        Pose{rotation_from_vector(turn), baseline * Eigen::Vector3d(-1, y, z)}};
   return rig;
 }
 

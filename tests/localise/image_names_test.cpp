@@ -51,8 +51,9 @@ TEST(NamesOfImages, OfOneFileNameAreToldApartByFolders) {
 }
 
 TEST(NamesOfImages, OneNameForTwoImagesIsRefused) {
-  const std::string said =
-      test::error_message([] { found({"left.png"}, {"set/000/left.png", "set/001/left.png"}); });
+  const std::string said = test::error_message([] {
+    found({"left.png"}, {"set/000/left.png", "set/001/left.png"});
+  });
   EXPECT_NE(said.find("\"left.png\" stands for both \"set/000/left.png\" and \"set/001/left.png\""),
             std::string::npos)
       << said;
@@ -69,7 +70,9 @@ TEST(FilesOfImages, AreOfTheNearestFolder) {
   EXPECT_EQ(of({"s1/depth/1.png", "s2/depth/1.png"}, {"s2/rgb/1.png", "s1/rgb/1.png"}),
             (Indices{1, 0}));
   EXPECT_EQ(of({"d1/1.png", "d2/1.png"}, {"rgb/1.jpg"}), Indices{none});  // as near
-  EXPECT_NE(test::error_message([&] { of({"d/1.png"}, {"a/1.png", "b/1.png"}); }).find("stands for"),
+  EXPECT_NE(test::error_message([&] {
+              of({"d/1.png"}, {"a/1.png", "b/1.png"});
+            }).find("stands for"),
             std::string::npos);
 }
 

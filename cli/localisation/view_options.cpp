@@ -55,7 +55,7 @@ std::vector<std::optional<Pose2D>> poses_of_pairs(const ViewOptions& options,
   const auto of_image = names_of_images(names, left_images(files), options.poses);
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!of_image[i]) {
-      throw Error(options.poses, "has no pose of " + in_quotes(files[i].left.filename().string()),
+      throw Error(options.poses, "has no pose of " + in_quotes(files[i].left.string()),
                   "add it, or leave the image out");
     }
     found[i] = poses.at(names[*of_image[i]]);

@@ -273,7 +273,7 @@ std::vector<Pose> poses_of_images(const CameraPoses& poses,
   const auto of_image = names_of_images(names, images, place);
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (!of_image[i]) {
-      throw Error(place, "has no pose of " + in_quotes(images[i].filename().string()),
+      throw Error(place, "has no pose of " + in_quotes(images[i].string()),
                   "add it, or leave the image out");
     }
     found.push_back(poses.poses[*of_image[i]].T_world_camera);

@@ -94,14 +94,16 @@ std::size_t below_floor(const DepthSegments& segments, const Stance& at) {
       std::count_if(segments.in_space.begin(), segments.in_space.end(), is_below));
 }
 
-std::vector<Stance> stances(const LinesArguments& options, const std::vector<ImageFiles>& files) {
+std::vector<Stance> stances(const LinesArguments& options,
+                            const CameraPoses& poses,
+                            const std::vector<ImageFiles>& files) {
   std::vector<Stance> all;
   if (options.poses.empty()) {
     all.assign(files.size(), {{}, options.height_m, turn_of(options)});
     return all;
   }
   for (const FloorPose& at :
-       floor_poses({options.poses, options.up, options.height_m}, left_images(files))) {
+       floor_poses(poses, {options.poses, options.up, options.height_m}, left_images(files))) {
     all.push_back({at.level.pose, at.level.height_m, at.level.R_level_camera});
   }
   return all;
@@ -187,13 +189,11 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
 }
 
 /// Names by which the readers of segments find the images' poses.
-std::vector<std::string> names_in_segments(const LinesArguments& options,
+std::vector<std::string> names_in_segments(const CameraPoses& poses,
                                            const std::vector<std::filesystem::path>& images) {
   std::vector<std::string> of_poses;
-  if (!options.segments.empty() && !options.poses.empty()) {
-    for (const CameraPose& pose : read_poses_of_camera(options.poses).poses) {
-      of_poses.push_back(pose.image);
-    }
+  for (const CameraPose& pose : poses.poses) {
+    if (!pose.image.empty()) of_poses.push_back(pose.image);  // others go by time or order
   }
   if (!need_folders(of_poses)) return distinct_names(images);
   std::vector<std::string> names;
@@ -207,8 +207,10 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
   check_outputs(options, files);
   const Camera camera = camera_of(options, files.front().left.string(), session);
   const auto rig = std::make_shared<const Rig>(rig_of({{camera, Pose{}}}));
-  const std::vector<Stance> all = stances(options, files);
-  const std::vector<std::string> names = names_in_segments(options, left_images(files));
+  const CameraPoses poses =
+      options.poses.empty() ? CameraPoses() : read_poses_of_camera(options.poses);
+  const std::vector<Stance> all = stances(options, poses, files);
+  const std::vector<std::string> names = names_in_segments(poses, left_images(files));
   OutputFiles outputs;
   FileInProgress& views = outputs.add(options.output);
   FileInProgress* const segments_file = outputs.add_wanted(options.segments);

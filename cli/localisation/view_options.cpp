@@ -47,18 +47,16 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
 /// Nothing of any pair without a file of poses.
 std::vector<std::optional<Pose2D>> poses_of_pairs(const ViewOptions& options,
                                                   const std::vector<ImageFiles>& files) {
-  std::vector<std::optional<Pose2D>> found(files.size());
-  if (options.poses.empty()) return found;
-  const std::map<std::string, Pose2D> poses = read_place_poses(options.poses);
+  if (options.poses.empty()) return std::vector<std::optional<Pose2D>>(files.size());
   std::vector<std::string> names;
-  for (const auto& [name, pose] : poses) names.push_back(name);
-  const auto of_image = names_of_images(names, left_images(files), options.poses);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!of_image[i]) {
-      throw Error(options.poses, "has no pose of " + in_quotes(files[i].left.string()),
-                  "add it, or leave the image out");
-    }
-    found[i] = poses.at(names[*of_image[i]]);
+  std::vector<Pose2D> poses;
+  for (const auto& [name, pose] : read_place_poses(options.poses)) {
+    names.push_back(name);
+    poses.push_back(pose);
+  }
+  std::vector<std::optional<Pose2D>> found;
+  for (const std::size_t pose : pose_names_of_images(names, left_images(files), options.poses)) {
+    found.push_back(poses[pose]);
   }
   return found;
 }

@@ -58,11 +58,16 @@ FloorPose above_floor(const Pose& T_world_camera,
 
 std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
                                    const std::vector<std::filesystem::path>& images) {
-  const std::vector<Pose> poses =
-      poses_of_images(read_poses_of_camera(options.poses), images, options.poses);
+  return floor_poses(read_poses_of_camera(options.poses), options, images);
+}
+
+std::vector<FloorPose> floor_poses(const CameraPoses& poses,
+                                   const FloorPoseOptions& options,
+                                   const std::vector<std::filesystem::path>& images) {
+  const std::vector<Pose> of_images = poses_of_images(poses, images, options.poses);
   std::vector<FloorPose> all;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    all.push_back(above_floor(poses[i], options, images[i].string()));
+  for (std::size_t i = 0; i < of_images.size(); ++i) {
+    all.push_back(above_floor(of_images[i], options, images[i].string()));
   }
   return all;
 }

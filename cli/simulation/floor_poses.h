@@ -8,6 +8,7 @@
 
 #include "calib/pose.h"
 #include "cli/program/namespaces.h"
+#include "localise/views/camera_poses.h"
 #include "localise/views/depth_view.h"
 
 namespace vernier::cli {
@@ -31,6 +32,10 @@ std::pair<int, int> up_axis(const std::string& word);
 /// The poses of images, in their order. Throws Error for poses of a body, without an image's, of a
 /// camera that looks straight up or down, and of one that is below the floor.
 std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
+                                   const std::vector<std::filesystem::path>& images);
+/// The same of poses that were read from options.poses.
+std::vector<FloorPose> floor_poses(const CameraPoses& poses,
+                                   const FloorPoseOptions& options,
                                    const std::vector<std::filesystem::path>& images);
 
 /// What to say of cameras that are mostly held as none is; empty if there is nothing to say. `down`

@@ -270,13 +270,8 @@ std::vector<Pose> poses_of_images(const CameraPoses& poses,
   }
   std::vector<std::string> names;
   for (const CameraPose& pose : poses.poses) names.push_back(pose.image);
-  const auto of_image = names_of_images(names, images, place);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (!of_image[i]) {
-      throw Error(place, "has no pose of " + in_quotes(images[i].string()),
-                  "add it, or leave the image out");
-    }
-    found.push_back(poses.poses[*of_image[i]].T_world_camera);
+  for (const std::size_t pose : pose_names_of_images(names, images, place)) {
+    found.push_back(poses.poses[pose].T_world_camera);
   }
   return found;
 }

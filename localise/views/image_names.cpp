@@ -120,6 +120,20 @@ Indices names_of_images(const std::vector<std::string>& names,
   return found;
 }
 
+std::vector<std::size_t> pose_names_of_images(const std::vector<std::string>& names,
+                                              const std::vector<Path>& images,
+                                              const std::string& place) {
+  std::vector<std::size_t> all;
+  for (const std::optional<std::size_t>& name : names_of_images(names, images, place)) {
+    if (!name) {
+      throw Error(place, "has no pose of " + in_quotes(images[all.size()].string()),
+                  "add it, or leave the image out");
+    }
+    all.push_back(*name);
+  }
+  return all;
+}
+
 Indices files_of_images(const std::vector<Path>& files,
                         const std::vector<Path>& images,
                         const std::string& place) {

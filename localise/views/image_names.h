@@ -20,6 +20,11 @@ std::vector<std::optional<std::size_t>> names_of_images(
     const std::vector<std::filesystem::path>& images,
     const std::string& place);
 
+/// The same where every image needs one: throws Error(`place`) for an image that has no pose there.
+std::vector<std::size_t> pose_names_of_images(const std::vector<std::string>& names,
+                                              const std::vector<std::filesystem::path>& images,
+                                              const std::string& place);
+
 /// Of each image the index of the file that has its name but for the ending; of several, the one
 /// of whose folders, counted from the end, most are those of the image. Nothing where there is none
 /// or two are as near. Throws Error(`place`) where one file belongs to two images.

@@ -49,8 +49,9 @@ class StereoMismatch : public UncertaintySource {
     const Camera& right = context.rig.cameras[1];
     const Eigen::Matrix3d& R = context.rectification.R_rectified_right;
     const std::optional<Eigen::Vector3d> seen = try_unproject(right, pixel);
-    if (!seen || !((R * *seen).z() > 0)) return Eigen::Vector2d::Zero();
+    if (!seen) return Eigen::Vector2d::Zero();
     Eigen::Vector3d ray = R * *seen;
+    if (!(ray.z() > 0)) return Eigen::Vector2d::Zero();
     ray /= ray.z();
     ray.x() += slip / right.f_px();
     return project(right, R.transpose() * ray) - pixel;

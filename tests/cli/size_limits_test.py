@@ -160,7 +160,7 @@ class Studies(Case):
 
 class Maps(Case):
     def route(self, length_m):
-        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\ncorners = [[0,1,1]]\n'
+        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\n'
                    f'[[route]]\npoints_m = [[0,0],[{length_m},0]]\n')
         return 'w.world.toml'
 

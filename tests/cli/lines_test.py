@@ -87,6 +87,12 @@ class Lines(verb_calls.ProgramCase):
         self.assertGreater(found, 12)
         rows = [json.loads(row) for row in (self.folder / 'segments.jsonl').read_text().splitlines()]
         self.assertEqual([row['image'] for row in rows], [f'walk{i}.pgm' for i in range(3)])
+        # Poses without names belong to the images in order, which keep their names.
+        matrices = (self.folder / 'poses.csv').read_text().splitlines()[1:]
+        (self.folder / 'kitti.txt').write_text(''.join(' '.join(row.split(',')[1:13]) + '\n' for row in matrices))
+        self.done(*CALL, '--poses', 'kitti.txt', '--height-m', '1', '-o', 'same.jsonl', '--segments', 'same.txt')
+        for one, other in (('out.jsonl', 'same.jsonl'), ('segments.jsonl', 'same.txt')):
+            self.assertEqual((self.folder / one).read_text(), (self.folder / other).read_text())
         for segment in rows[0]['segments']:
             C = segment['covariance_m2']
             self.assertEqual([len(row) for row in C], [6] * 6)

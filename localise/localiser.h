@@ -140,14 +140,25 @@ using LocaliserFactory =
 /// LocaliserOptions::image_histograms.
 bool uses_image_histograms(std::string_view method);
 
-/// What a method needs of views that not every view holds.
+/// What a method needs of views, of the map and of queries.
 struct ViewNeeds {
-  bool corners = false;  ///< PlaceView::corners, of the map and of queries
+  bool corners = false;  ///< PlaceView::corners, which not every view holds
+  bool lines = true;     ///< PlaceView::lines or image_lines
 };
 
 /// Makes a method known to make_localiser, and so to studies of this process. Safe with threads.
 /// Throws Error for a name that is empty or taken.
 void register_localiser(const std::string& method, LocaliserFactory factory, ViewNeeds needs = {});
+
+/// Whether a method's answers can depend on an option: "looks" for further looks of a query,
+/// "endpoint_sigma" for the told error of ends of lines, "histograms" for the histograms of the
+/// method, else the name of a member of LocaliserOptions. True for methods that were registered.
+bool uses_option(std::string_view method,
+                 std::string_view option,
+                 const LocaliserOptions& options = {});
+
+/// Whether a method looks at lines; true for an unknown one.
+bool uses_lines(std::string_view method);
 
 /// Whether views should hold corners: for a method that needs them, or if the options say so.
 /// False for an unknown method otherwise.

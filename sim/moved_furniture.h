@@ -15,6 +15,9 @@ namespace vernier::sim {
 /// ceiling_vent, notice_board, whiteboard, socket and light_switch, as in generated offices.
 bool is_fixture(std::string_view template_name);
 
+/// Whether a world has objects that with_moved_furniture may move.
+bool has_furniture(const World& world);
+
 /// The world after a share of its furniture has been moved: every object but the loose features and
 /// the fixtures moves with probability `share`, by 0.3 to 1 m in any direction along the floor, and
 /// is turned by up to ± 0.8 rad about its own middle, both uniform. Through walls and each other,

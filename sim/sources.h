@@ -55,20 +55,29 @@ struct SourceSettings {
   double time_limit_s = 10;  ///< of the program, for a view; above 0
 };
 
+/// What of a view a source changes.
+enum class SourceTarget { view, edges, corners };
+
 /// One setting, with its name in study files.
 struct SourceParameter {
   std::string_view name;
   double SourceSettings::*value;
   double low, high;  ///< accepted, inclusive
   bool is_switch;    ///< 0 disables a source; false: a magnitude used when a source is enabled
+  SourceTarget acts_on;
   std::string_view about;
   /// Results are stored under keys that leave it out while it has its default: stores older than
   /// the setting stay valid.
   bool is_newer = false;
+  /// Of a magnitude: the setting without which, at 0, it has no effect.
+  std::string_view only_with = {};
 };
 
 /// All numeric settings, in the order in which the sources act.
 std::span<const SourceParameter> source_parameters();
+
+/// The one of that name; null if there is none.
+const SourceParameter* source_parameter(std::string_view name);
 
 /// Throws Error naming the setting for a value out of range, and a command that is none.
 void check(const SourceSettings& settings, const std::string& place);

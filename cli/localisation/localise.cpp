@@ -10,6 +10,7 @@
 #include <ctime>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/base/atomic_file.h"
@@ -118,6 +119,26 @@ std::vector<LocalisedQuery> simulated_queries(const LocaliseArguments& options,
   return queries;
 }
 
+/// Refuses options that the method does not use.
+void check_options_of_method(const LocaliseArguments& options, const CLI::App& verb) {
+  constexpr std::array<std::pair<const char*, const char*>, 10> known{
+      {{"--looks", "looks"},
+       {"--ranker", "ranker"},
+       {"--candidates", "candidates"},
+       {"--max-error-rate", "max_error_rate"},
+       {"--off-map", "off_map"},
+       {"--repeats", "repeats"},
+       {"--stages", "stages"},
+       {"--min-corners", "min_corners"},
+       {"--command", "command"},
+       {"--time-limit-s", "time_limit_s"}}};
+  for (const auto& [option, name] : known) {
+    if (uses_option(options.method, name)) continue;
+    refuse_options(verb, std::array{option}, "it has no effect on --method " + options.method,
+                   "leave it out, or choose another method");
+  }
+}
+
 void check(const LocaliseArguments& options, const CLI::App& verb) {
   check(options.views, verb);
   if (options.views.world.empty()) {
@@ -127,10 +148,7 @@ void check(const LocaliseArguments& options, const CLI::App& verb) {
   if (options.method == "program" && options.localiser.command.empty()) {
     throw Error("localise", "--method program needs the program", "give --command");
   }
-  if (options.method != "program") {
-    constexpr std::array of_program{"--command", "--time-limit-s"};
-    refuse_options(verb, of_program, "the method is no program", "also give --method program");
-  }
+  check_options_of_method(options, verb);
   if (options.output.empty()) return;
   check_output_is_not_input({options.map}, options.output);
   for (const std::string& input : {options.views.features, options.views.poses, options.views.rig,

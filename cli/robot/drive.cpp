@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -172,11 +173,14 @@ void report(const DriveLog& log, Session& session) {
                   truth.x_m, truth.y_m, end[2].get<double>(), off_m, off_deg));
 }
 
-void run(const DriveArguments& options, Session& session) {
+void run(const DriveArguments& options, const CLI::App& verb, Session& session) {
   if (options.commands.empty() == options.command.empty()) {
     throw Error("drive",
                 options.commands.empty() ? "no commands are given" : "commands and a program",
                 "give either --commands or --command");
+  }
+  if (options.command.empty()) {
+    refuse_options(verb, std::array{"--time-limit-s"}, "there is no program, --command");
   }
   for (const std::string* file :
        {&options.output, &options.truth, &options.odometry, &options.plan}) {
@@ -242,8 +246,8 @@ void add_drive(CLI::App& app, Session& session) {
   verb->add_option("--truth", o->truth, "true trajectory of the left camera, TUM format");
   verb->add_option("--odometry", o->odometry, "the same by odometry, from the true start");
   verb->add_option("--plan", o->plan, "floor plan with both ways, SVG");
-  check_files_written(*verb, {"--output", "--truth", "--plan"});
-  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+  check_files_written(*verb, {"--output", "--truth", "--odometry", "--plan"});
+  verb->callback([o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }
 
 }  // namespace vernier::cli

@@ -20,25 +20,27 @@ namespace {
 
 const SourceParameter& source_named(const std::string& word) {
   const std::size_t equals = word.find('=');
+  const SourceParameter* found =
+      equals == std::string::npos ? nullptr : source_parameter(word.substr(0, equals));
+  if (found) return *found;
   std::string names = "none";
   for (const SourceParameter& parameter : source_parameters()) {
-    if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
     names += ", " + std::string(parameter.name) + "=…";
   }
   throw Error("--source " + word, "unknown error source",
               "supported: " + names + ", command=…, time_limit_s=…");
 }
 
-/// Refuses settings without effect: the range of a source that is off.
+/// Refuses settings without effect: the magnitude of a source that is off.
 void check_effect(const SourceSettings& settings, const std::set<std::string_view>& given) {
-  const auto refuse = [&](std::string_view reach, std::string_view of, double share) {
-    if (share > 0 || given.count(reach) == 0) return;
-    throw Error("--source " + std::string(reach),
-                "has no effect while " + std::string(of) + " is 0",
-                "also give --source " + std::string(of) + "=…, or leave it out");
-  };
-  refuse("stereo_mismatch_px", "stereo_mismatch", settings.stereo_mismatch);
-  refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
+  for (const SourceParameter& parameter : source_parameters()) {
+    const std::string of(parameter.only_with);
+    if (of.empty() || given.count(parameter.name) == 0) continue;
+    if (settings.*source_parameter(of)->value > 0) continue;
+    throw Error("--source " + std::string(parameter.name),
+                "has no effect while " + of + " is 0",
+                "also give --source " + of + "=…, or leave it out");
+  }
 }
 
 /// Those of --source.

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/study_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <set>
@@ -23,6 +26,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "sim/experiment.h"
+#include "sim/study/idle_settings.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/told_settings.h"
@@ -188,6 +192,18 @@ void check_covariances(const Study& study) {
   }
 }
 
+/// Throws Error for settings without effect; says which sources have none.
+void check_settings(const Study& study, const Session& session) {
+  std::map<std::string, std::vector<std::string>> idle;  // sources by reason
+  for (IdleSource& source : check_settings_act(study)) {
+    idle[source.reason].push_back(std::move(source.key));
+  }
+  for (const auto& [reason, keys] : idle) {
+    session.warn(fmt::format("{}: {} {} no effect: {}", place_of(study.file, keys[0]),
+                             fmt::join(keys, ", "), keys.size() == 1 ? "has" : "have", reason));
+  }
+}
+
 enum class WithRig { yes, no };
 
 template <class FileOf>
@@ -256,12 +272,15 @@ Study load_study(const fs::path& file, Session& session) {
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
   Study study = assemble_beside(parse_study(text, place.string()), place.parent_path(), session,
                                 WithRig::yes);
+  check_settings(study, session);
   check_covariances(study);
   return study;
 }
 
 Study load_inputs_without_rig(const StudyFile& study, const fs::path& beside, Session& session) {
-  return assemble_beside(study, beside, session, WithRig::no);
+  Study read = assemble_beside(study, beside, session, WithRig::no);
+  check_settings(read, session);
+  return read;
 }
 
 Study open_folder(const fs::path& folder, Session& session) {

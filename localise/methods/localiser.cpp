@@ -91,11 +91,11 @@ class Registry {
 
   void add(const std::string& method, LocaliserFactory factory, ViewNeeds needs) {
     const std::lock_guard lock(mutex_);
-    if (!factory && factories_.count(method) == 0) {
+    if (!factory && methods_.count(method) == 0) {
       throw Error("localiser " + vernier::internal::in_quotes(method), "has no factory",
                   "give a function that makes one");
     }
-    if (method.empty() || !factories_.emplace(method, Method{std::move(factory), needs}).second) {
+    if (method.empty() || !methods_.emplace(method, Method{std::move(factory), needs, {}}).second) {
       throw Error("localiser " + vernier::internal::in_quotes(method),
                   method.empty() ? "has no name" : "is already registered", "choose another name");
     }
@@ -104,34 +104,47 @@ class Registry {
   std::vector<std::string> names() const {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> names;
-    names.reserve(factories_.size());
-    for (const auto& [name, unused] : factories_) names.push_back(name);
+    names.reserve(methods_.size());
+    for (const auto& [name, unused] : methods_) names.push_back(name);
     return names;
   }
 
   struct Method {
     LocaliserFactory factory;
     ViewNeeds needs;
+    std::vector<std::string_view> options;  ///< uses_option; empty: all
   };
 
   /// Without a factory for an unknown name.
   Method find(std::string_view method) const {
     const std::lock_guard lock(mutex_);
-    const auto found = factories_.find(std::string(method));
-    return found == factories_.end() ? Method{} : found->second;
+    const auto found = methods_.find(std::string(method));
+    return found == methods_.end() ? Method{} : found->second;
   }
 
  private:
   Registry()
-      : factories_{{"corners", {factory<CornerLocaliser>(), {.corners = true}}},
-                   {"lines", {factory<LineLocaliser>(), {}}},
-                   {"pgh", {factory<PghLocaliser>(), {}}},
-                   {"pgh_baseline", {factory<BaselineLocaliser>(), {}}},
-                   {"pgh_baseline_vectorised", {factory<VectorisedBaselineLocaliser>(), {}}},
-                   {"program", {factory<ProgramLocaliser>(), {}}}} {}
+      : methods_{
+            {"corners",
+             {factory<CornerLocaliser>(),
+              {.corners = true, .lines = false},
+              {"candidates", "corners", "min_corners"}}},
+            {"lines",
+             {factory<LineLocaliser>(),
+              {},
+              {"candidates", "endpoint_sigma", "histograms", "looks", "max_error_rate", "off_map",
+               "ranker", "repeats", "stages"}}},
+            {"pgh", {factory<PghLocaliser>(), {}, {"candidates", "endpoint_sigma", "histograms"}}},
+            {"pgh_baseline", {factory<BaselineLocaliser>(), {}, {"histograms"}}},
+            {"pgh_baseline_vectorised",
+             {factory<VectorisedBaselineLocaliser>(), {}, {"histograms"}}},
+            {"program",
+             {factory<ProgramLocaliser>(),
+              {},
+              {"command", "corners", "endpoint_sigma", "looks", "time_limit_s"}}}} {}
 
   mutable std::mutex mutex_;
-  std::map<std::string, Method> factories_;
+  std::map<std::string, Method> methods_;
 };
 
 }  // namespace
@@ -200,6 +213,17 @@ void register_localiser(const std::string& method, LocaliserFactory factory, Vie
 }
 
 bool uses_image_histograms(std::string_view method) { return method.starts_with("pgh_baseline"); }
+
+bool uses_option(std::string_view method,
+                 std::string_view option,
+                 const LocaliserOptions& options) {
+  const std::vector<std::string_view> used = Registry::instance().find(method).options;
+  if (used.empty()) return true;
+  if (method == "lines" && option == "histograms" && options.ranker == "view") return false;
+  return std::find(used.begin(), used.end(), option) != used.end();
+}
+
+bool uses_lines(std::string_view method) { return Registry::instance().find(method).needs.lines; }
 
 bool needs_corners(std::string_view method, const LocaliserOptions& options) {
   return options.corners || Registry::instance().find(method).needs.corners;

@@ -90,6 +90,12 @@ bool is_fixture(std::string_view template_name) {
   return std::find(std::begin(fixtures), std::end(fixtures), template_name) != std::end(fixtures);
 }
 
+bool has_furniture(const World& world) {
+  return std::any_of(world.objects.begin(), world.objects.end(), [](const WorldObject& one) {
+    return !one.template_name.empty() && !is_fixture(one.template_name);
+  });
+}
+
 World with_moved_furniture(const World& world, double share, std::uint64_t seed) {
   World changed = world;
   const std::vector<Displacement> all = displacements(world, share, seed);

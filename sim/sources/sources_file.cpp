@@ -16,12 +16,6 @@
 namespace vernier::sim::internal {
 namespace {
 
-const SourceParameter& parameter_of(std::string_view key) {
-  const auto all = source_parameters();
-  return *std::find_if(all.begin(), all.end(),
-                       [&](const SourceParameter& parameter) { return parameter.name == key; });
-}
-
 /// Four digits, more than any interval here justifies.
 double rounded(double value) {
   return vernier::internal::to_real(fmt::format("{:.4g}", value)).value_or(value);
@@ -87,7 +81,7 @@ std::string lines_of(const SourceEntry& entry, const MeasuredSources& sources, S
 }  // namespace
 
 SourceEntry source_entry(const char* key, const MeasuredValue& measured, std::string note) {
-  const SourceParameter& parameter = parameter_of(key);
+  const SourceParameter& parameter = *source_parameter(key);
   SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
                     std::move(note)};
   if (!entry.written) {
@@ -103,7 +97,7 @@ SourceEntry source_entry(const char* key, const MeasuredValue& measured, std::st
 }
 
 SourceEntry kept_entry(const char* key, std::string why) {
-  return {key, {}, SourceSettings().*parameter_of(key).value, false, std::move(why)};
+  return {key, {}, SourceSettings().*source_parameter(key)->value, false, std::move(why)};
 }
 
 std::string source_line(const SourceEntry& entry) {

@@ -15,6 +15,7 @@
 #include "calib/error.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/idle_settings.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 
@@ -37,11 +38,9 @@ std::vector<const SourceParameter*> switches() {
   return all;
 }
 
-const SourceParameter* source_named(std::string_view name) {
-  const auto all = switches();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const auto* p) { return p->name == name; });
-  return found == all.end() ? nullptr : *found;
+const SourceParameter* switch_named(std::string_view name) {
+  const SourceParameter* found = source_parameter(name);
+  return found && found->is_switch ? found : nullptr;
 }
 
 void read_designs(const TomlReader& reader, const toml::node& node, OneAtATime& read) {
@@ -63,7 +62,7 @@ void read_designs(const TomlReader& reader, const toml::node& node, OneAtATime& 
 void read_sources(const TomlReader& reader, const toml::node& node, OneAtATime& read) {
   for (const toml::node& entry : reader.list(node, "one_at_a_time.sources")) {
     const std::string word = reader.text(entry, "a source");
-    if (!source_named(word)) {
+    if (!switch_named(word)) {
       std::vector<std::string_view> known;
       for (const SourceParameter* p : switches()) known.push_back(p->name);
       reader.fail(entry,
@@ -119,18 +118,18 @@ void name_design(StudyCell& cell,
   cell.label = first ? words : cell.label + ", " + words;
 }
 
-/// The sources of the designs: those named, or all that are on.
+/// The sources of the designs: those named, or all that are on and may act.
 std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
                                                    const OneAtATime& designs) {
   std::vector<const SourceParameter*> chosen;
   const SourceSettings& sources = cell.experiment.sources;
   if (designs.sources.empty()) {
     for (const SourceParameter* p : switches()) {
-      if (sources.*p->value != 0) chosen.push_back(p);
+      if (sources.*p->value != 0 && why_idle(key_of(*p), cell).empty()) chosen.push_back(p);
     }
   }
   for (const std::string& name : designs.sources) {
-    chosen.push_back(source_named(name));
+    chosen.push_back(switch_named(name));
     if (designs.only && !designs.all_but && !designs.swept &&
         chosen.back()->value == &SourceSettings::epipolar_reject_deg) {
       throw Error(designs.sources_place,
@@ -138,10 +137,11 @@ std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
                       " adds no error alone: design \"only\" keeps it as it is set in all cells",
                   "leave it out, or use design \"all_but\" or \"swept\"");
     }
-    if (sources.*chosen.back()->value != 0) continue;
-    throw Error(designs.sources_place,
-                "one_at_a_time.sources: sources." + name + " is 0, so it is off everywhere",
-                "set it in [sources], or leave it out");
+    if (sources.*chosen.back()->value == 0) {
+      throw Error(designs.sources_place,
+                  "one_at_a_time.sources: sources." + name + " is 0, so it is off everywhere",
+                  "set it in [sources], or leave it out");
+    }
   }
   if (chosen.empty()) {
     throw Error(designs.sources_place, "one_at_a_time: no source is on", "set one in [sources]");
@@ -225,6 +225,8 @@ std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& de
   }
   return cells;
 }
+
+std::string varied_source(const StudyCell& cell) { return swept_value(cell, source_key); }
 
 bool has_design(const StudyCell& cell) { return !swept_value(cell, design_key).empty(); }
 

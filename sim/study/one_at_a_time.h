@@ -21,7 +21,7 @@ struct OneAtATime {
   bool only = false;
   bool all_but = false;  ///< all sources but this; the reference has all
   bool swept = false;    ///< this source times each factor, beside all others; the same reference
-  std::vector<std::string> sources;          ///< names; empty: all that are on
+  std::vector<std::string> sources;          ///< names; empty: all that are on and may act
   std::vector<double> factors = {0.5, 2.0};  ///< of `swept`, neither 0 nor 1
   std::string sources_place, factors_place;  ///< file and line of these keys, or of the table
 };
@@ -34,6 +34,9 @@ OneAtATime read_one_at_a_time(const toml::table& table, const std::string& place
 /// source, only, all but, swept), "source" and "value". Throws Error if a named source is off, a
 /// value is out of the source's range, or no source is on.
 std::vector<StudyCell> one_at_a_time(const StudyCell& cell, const OneAtATime& designs);
+
+/// The source that a cell of a design switches or sweeps; empty if none.
+std::string varied_source(const StudyCell& cell);
 
 /// Whether a cell is of a design, and whether `reference` is what it is compared with.
 bool has_design(const StudyCell& cell);

@@ -128,6 +128,7 @@ void StudyReader::check_sweep_key(const toml::table& root,
   const Keys sections{"study",  "world", "rig",       "calibration", "sources", "corners",
                       "camera", "map",   "localiser", "histograms",  "system",  "parameters"};
   SystemReader(place()).check_sweep_key(root, key, node);
+  if (head == "calibration") ToldReader(place()).check_told_once(root);
   if (key == "rig.file" && !(section(root, "rig") && section(root, "rig")->contains("truth"))) {
     fail(node, "a rig is its own truth unless rig.truth is given: the cells would show other rigs",
          "name the true rig as rig.truth; rig.file is then what the estimator is told of it");
@@ -279,21 +280,6 @@ void StudyReader::note_lines(const toml::table& root, StudyFile& study) const {
   }
 }
 
-/// Refuses a program that no cell asks.
-void check_program_is_asked(const StudyFile& study) {
-  for (const char* key : {"localiser.command", "localiser.time_limit_s"}) {
-    const bool asked =
-        study.lines.count(key) == 0 ||
-        std::any_of(study.cells.begin(), study.cells.end(),
-                    [](const StudyCell& cell) { return cell.experiment.method == "program"; });
-    if (asked) continue;
-    throw Error(
-        place_of(study, key),
-        fmt::format("{} is set, but no localiser.method is \"program\", so it is not used", key),
-        "set method = \"program\", or leave it out");
-  }
-}
-
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
@@ -325,8 +311,6 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
                 "sources.moved moves what the view sets of the world name",
                 "set world.visibility = \"exact\", or moved = 0");
   }
-  check_program_is_asked(study);
-  check_options_are_used(study);
   return study;
 }
 

@@ -22,6 +22,7 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/idle_settings.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
@@ -201,16 +202,12 @@ std::vector<LimitingCause> limiting_causes(Study study, const SuccessCurveOption
   if (system_of(study.file).sources != SourcesUsed::all) return {};
   const StudyCell now =
       with_source(study.file.cells[0], "calibration", &SourceSettings::calibration, 0);
-  const ExperimentSettings& settings = now.experiment;
-  const SourceSettings& sources = settings.sources;
-  const bool has_corners =
-      now.system.is_localiser() && localise::needs_corners(settings.method, settings.localiser);
+  const SourceSettings& sources = now.experiment.sources;
   std::vector<LimitingCause> causes;
   std::vector<StudyCell> cells;
   for (const SourceParameter& parameter : source_parameters()) {
-    const bool of_corners = parameter.name.starts_with("corner");
     if (parameter.name == "calibration" || !parameter.is_switch ||
-        !(sources.*parameter.value > 0) || (of_corners && !has_corners)) {
+        !(sources.*parameter.value > 0) || !why_idle(key_of(parameter), now).empty()) {
       continue;
     }
     causes.push_back({std::string(parameter.name)});

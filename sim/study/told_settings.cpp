@@ -114,6 +114,17 @@ void ToldReader::read_calibration(const toml::table& section, ToldSettings& sett
   }
 }
 
+void ToldReader::check_told_once(const toml::table& root) const {
+  const auto* rig = part(root, "rig");
+  if (!rig || !rig->contains("truth")) return;
+  for (const char* key : {"file", "error"}) {
+    if (const auto* node = rig->get(key)) {
+      fail(*node, fmt::format("rig.{} has no effect: [calibration] gives the rig that is told", key),
+           "remove it, or [calibration]");
+    }
+  }
+}
+
 ToldSettings ToldReader::read(const toml::table& root) const {
   ToldSettings settings;
   if (const auto* rig = part(root, "rig")) {
@@ -134,16 +145,7 @@ ToldSettings ToldReader::read(const toml::table& root) const {
   }
   const auto* calibration = part(root, "calibration");
   if (!calibration) return settings;
-  if (!settings.truth.empty()) {
-    const toml::table& rig = *part(root, "rig");
-    for (const char* key : {"file", "error"}) {
-      if (const auto* node = rig.get(key)) {
-        fail(*node,
-             fmt::format("rig.{} has no effect: [calibration] gives the rig that is told", key),
-             "remove it, or [calibration]");
-      }
-    }
-  }
+  check_told_once(root);
   read_calibration(*calibration, settings);
   return settings;
 }

@@ -37,6 +37,8 @@ class ToldReader : public vernier::internal::TomlReader {
   ToldSettings read(const toml::table& root) const;
   /// Throws Error for what is missing and not among the keys of the sweep.
   void check_complete(const toml::table& root, const std::vector<std::string>& swept) const;
+  /// Throws Error for a rig that is told by file in a study with [calibration].
+  void check_told_once(const toml::table& root) const;
 
  private:
   const toml::table* part(const toml::table& root, const char* name) const;

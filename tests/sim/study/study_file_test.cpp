@@ -218,9 +218,6 @@ TEST(StudyFile, AProgramIsPartOfTheCell) {
   EXPECT_NE(
       complaint_of(program + "command = \" \"\n").find("s.toml:4: localiser.command is empty"),
       std::string::npos);
-  EXPECT_NE(complaint_of("[study]\n[localiser]\ncommand = \"./mine\"\n")
-                .find("s.toml:3: localiser.command is set, but no localiser.method is \"program\""),
-            std::string::npos);
   EXPECT_NE(complaint_of(program + "command = \"a 'b\"\n").find("unclosed quote"),
             std::string::npos);
   EXPECT_NE(complaint_of(program + "command = \"a\"\ntime_limit_s = 0\n").find("out of range"),

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/idle_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "calib/base/shown_text.h"
+#include "calib/error.h"
+#include "localise/localiser.h"
+#include "localise/pgh.h"
+#include "sim/experiment.h"
+#include "sim/moved_furniture.h"
+#include "sim/study/one_at_a_time.h"
+#include "sim/study/study_keys.h"
+#include "sim/study/system_kind.h"
+#include "sim/study/system_reader.h"
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
+
+using namespace localise;
+using namespace vernier::internal;
+
+namespace {
+
+std::string method_is(const StudyCell& cell) {
+  return "localiser.method is " + in_quotes(cell.experiment.method);
+}
+
+std::string why_localiser_idle(std::string_view name, const StudyCell& cell) {
+  if (name == "method") return {};
+  const std::string_view option = name == "knows_endpoint_sigma" ? "endpoint_sigma" : name;
+  const ExperimentSettings& settings = cell.experiment;
+  return uses_option(settings.method, option, settings.localiser) ? "" : method_is(cell);
+}
+
+std::string why_histograms_idle(std::string_view name, const StudyCell& cell) {
+  const ExperimentSettings& settings = cell.experiment;
+  if (!uses_option(settings.method, "histograms", settings.localiser)) {
+    return uses_option(settings.method, "ranker")
+               ? "localiser.ranker is " + in_quotes(settings.localiser.ranker)
+               : method_is(cell);
+  }
+  const bool of_image = uses_image_histograms(settings.method);
+  if (of_image && name == "height_bands") return method_is(cell);
+  const PghOptions& histograms =
+      of_image ? settings.localiser.image_histograms : settings.localiser.histograms;
+  const bool is_width = name == "angle_sigma_deg" || name == "distance_sigma";
+  if (!is_width || histograms.blur == PghBlur::fixed) return {};
+  return "histograms.blur is " + in_quotes(std::string(localise::name(histograms.blur)));
+}
+
+bool sees(SourceTarget target, const StudyCell& cell) {
+  const ExperimentSettings& settings = cell.experiment;
+  if (target == SourceTarget::view) return true;
+  if (!cell.system.is_localiser()) return target == SourceTarget::edges;
+  return target == SourceTarget::edges ? uses_lines(settings.method)
+                                       : needs_corners(settings.method, settings.localiser);
+}
+
+std::string why_source_idle(const std::string& name, const StudyCell& cell) {
+  const SourceSettings& sources = cell.experiment.sources;
+  if (name == "time_limit_s") return sources.command.empty() ? "sources.command is not set" : "";
+  if (name == "lateral_shift_mode") {
+    return sources.lateral_shift_px == 0 ? "sources.lateral_shift_px is 0" : "";
+  }
+  const SourceParameter* source = source_parameter(name);
+  if (!source) return {};
+  if (!sees(source->acts_on, cell)) {
+    return cell.system.is_localiser() ? method_is(cell)
+                                      : system_kind(cell.system.name).noun + " sees no corners";
+  }
+  if (source->only_with.empty()) return {};
+  const SourceParameter& with = *source_parameter(source->only_with);
+  return sources.*with.value == 0 ? key_of(with) + " is 0"
+                                  : why_source_idle(std::string(source->only_with), cell);
+}
+
+/// The same where the cell's world is known.
+std::string why_idle_there(const std::string& key, const StudyCell& cell, const Study& study) {
+  const std::string why = why_idle(key, cell);
+  if (!why.empty() || !key.starts_with("sources.")) return why;
+  const SourceParameter* source = source_parameter(std::string_view(key).substr(8));
+  if (!source || !system_kind(cell.system.name).uses("world")) return {};
+  const World& world = world_of(study, cell);
+  if (source->value == &SourceSettings::moved && !has_furniture(world)) {
+    return "the world " + cell.world + " has no furniture";
+  }
+  if (source->acts_on == SourceTarget::corners && world.corners.empty()) {
+    return "the world " + cell.world + " has no corners";
+  }
+  return {};
+}
+
+/// Empty if the setting acts in a cell; else why it does not in the first.
+std::string why_idle_in_all(const std::string& key, const Study& study) {
+  std::string first;
+  for (const StudyCell& cell : study.file.cells) {
+    const std::string why = why_idle_there(key, cell, study);
+    if (why.empty()) return {};
+    if (first.empty()) first = why;
+  }
+  return first;
+}
+
+/// Whether a setting has its default in all cells, or they do not list it.
+bool is_usual(const std::string& key, const StudyFile& study) {
+  const std::map<std::string, std::string> usual = settings_of(ExperimentSettings());
+  const auto known = usual.find(key);
+  return std::all_of(study.cells.begin(), study.cells.end(), [&](const StudyCell& cell) {
+    const auto set = cell.settings.find(key);
+    if (set == cell.settings.end()) return true;
+    return known != usual.end() && set->second == known->second;
+  });
+}
+
+/// Listed of cells that use it only.
+bool is_listed_where_used(const std::string& key) {
+  return key.starts_with("corners.") || key == "localiser.min_corners" ||
+         key == "localiser.command" || key == "localiser.time_limit_s" ||
+         key == "sources.time_limit_s";
+}
+
+/// Whether it describes images, not what looks at them or how.
+bool is_source_of_error(const std::string& key) {
+  return key.starts_with("sources.") && key != "sources.time_limit_s";
+}
+
+bool is_off_in_all(const std::string& key, const StudyFile& study) {
+  return std::all_of(study.cells.begin(), study.cells.end(), [&](const StudyCell& cell) {
+    const auto set = cell.settings.find(key);
+    return set != cell.settings.end() && set->second == "0";
+  });
+}
+
+[[noreturn]] void refuse(const std::string& key,
+                         const std::string& reason,
+                         const StudyFile& study) {
+  const std::string with = reason.substr(0, reason.find(' '));
+  const bool is_of_setting = with.find('.') != std::string::npos;
+  throw Error(place_of(study, key), key + " has no effect: " + reason,
+              "leave it out" + (is_of_setting ? ", or change " + with : ""));
+}
+
+void check_designs(const Study& study) {
+  for (const StudyCell& cell : study.file.cells) {
+    const std::string source = varied_source(cell);
+    if (source.empty()) continue;
+    const std::string key = "sources." + source;
+    const std::string reason = why_idle_in_all(key, study);
+    if (reason.empty()) continue;
+    throw Error(place_of(study.file, "one_at_a_time.sources"),
+                "one_at_a_time varies " + key + ", which has no effect: " + reason,
+                "name in one_at_a_time.sources those that act");
+  }
+}
+
+}  // namespace
+
+std::string key_of(const SourceParameter& source) { return "sources." + std::string(source.name); }
+
+std::string why_idle(const std::string& key, const StudyCell& cell) {
+  const std::size_t dot = key.find('.');
+  const std::string section = key.substr(0, dot), name = key.substr(dot + 1);
+  const ExperimentSettings& settings = cell.experiment;
+  if (section == "sources") return why_source_idle(name, cell);
+  if (!cell.system.is_localiser()) return {};
+  if (section == "localiser") return why_localiser_idle(name, cell);
+  if (section == "histograms") return why_histograms_idle(name, cell);
+  if (section == "corners") {
+    return needs_corners(settings.method, settings.localiser) ? "" : method_is(cell);
+  }
+  if (key == "map.rig" && settings.sources.calibration == 0) return "sources.calibration is 0";
+  return {};
+}
+
+std::vector<IdleSource> check_settings_act(const Study& study) {
+  const StudyFile& file = study.file;
+  check_options_are_used(file);
+  check_designs(study);
+  std::vector<IdleSource> idle;
+  for (const auto& [key, line] : file.lines) {
+    if (key.find('.') == std::string::npos) continue;
+    const std::string reason = why_idle_in_all(key, study);
+    if (reason.empty()) continue;
+    const auto& swept = file.sweep_keys;
+    if (std::find(swept.begin(), swept.end(), key) != swept.end() || is_listed_where_used(key)) {
+      refuse(key, reason, file);
+    }
+    if (is_usual(key, file)) continue;
+    if (!is_source_of_error(key)) refuse(key, reason, file);
+    if (!is_off_in_all(key, file)) idle.push_back({key, reason});
+  }
+  return idle;
+}
+
+}  // namespace vernier::sim::internal

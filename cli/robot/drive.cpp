@@ -247,7 +247,8 @@ void add_drive(CLI::App& app, Session& session) {
   verb->add_option("--odometry", o->odometry, "the same by odometry, from the true start");
   verb->add_option("--plan", o->plan, "floor plan with both ways, SVG");
   check_files_written(*verb, {"--output", "--truth", "--odometry", "--plan"});
-  verb->callback([o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
 }
 
 }  // namespace vernier::cli

@@ -37,8 +37,7 @@ void check_effect(const SourceSettings& settings, const std::set<std::string_vie
     const std::string of(parameter.only_with);
     if (of.empty() || given.count(parameter.name) == 0) continue;
     if (settings.*source_parameter(of)->value > 0) continue;
-    throw Error("--source " + std::string(parameter.name),
-                "has no effect while " + of + " is 0",
+    throw Error("--source " + std::string(parameter.name), "has no effect while " + of + " is 0",
                 "also give --source " + of + "=…, or leave it out");
   }
 }

@@ -53,7 +53,8 @@ constexpr SourceParameter parameters[] = {
     {"corner_mismatch", &SourceSettings::corner_mismatch, 0, 1, true, SourceTarget::corners,
      "psi_cm: fraction of corner pairs matched wrongly"},
     {"corner_mismatch_px", &SourceSettings::corner_mismatch_px, 0, 500, false,
-     SourceTarget::corners, "maximum displacement of a wrong corner match", false, "corner_mismatch"},
+     SourceTarget::corners, "maximum displacement of a wrong corner match", false,
+     "corner_mismatch"},
     {"calibration", &SourceSettings::calibration, 0, 1000, true, SourceTarget::view,
      "psi_c: factor on the standard deviations of the calibration"},
 };

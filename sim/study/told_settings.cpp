@@ -119,7 +119,8 @@ void ToldReader::check_told_once(const toml::table& root) const {
   if (!rig || !rig->contains("truth")) return;
   for (const char* key : {"file", "error"}) {
     if (const auto* node = rig->get(key)) {
-      fail(*node, fmt::format("rig.{} has no effect: [calibration] gives the rig that is told", key),
+      fail(*node,
+           fmt::format("rig.{} has no effect: [calibration] gives the rig that is told", key),
            "remove it, or [calibration]");
     }
   }

@@ -171,10 +171,10 @@ void remove_idle_settings(toml::table& study, const std::string& place) {
     toml::table* section =
         dot == std::string::npos ? nullptr : study.get_as<toml::table>(key.substr(0, dot));
     if (!section) continue;
-    const auto is_idle = [&](const StudyCell& cell) { return !why_idle(key, cell).empty(); };
-    if (std::all_of(read.cells.begin(), read.cells.end(), is_idle)) {
-      section->erase(key.substr(dot + 1));
-    }
+    const bool acts =
+        std::any_of(read.cells.begin(), read.cells.end(),
+                    [&, key = key](const StudyCell& cell) { return why_idle(key, cell).empty(); });
+    if (!acts) section->erase(key.substr(dot + 1));
   }
 }
 

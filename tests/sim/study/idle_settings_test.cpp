@@ -46,7 +46,8 @@ TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
   } cases[] = {
       {"[localiser]\nmethod = \"pgh\"\nlooks = 2\n",
        "s.toml:5: localiser.looks has no effect: localiser.method is \"pgh\""},
-      {"[localiser]\nmethod = \"pgh_baseline\"\ncandidates = 7\n", "s.toml:5: localiser.candidates"},
+      {"[localiser]\nmethod = \"pgh_baseline\"\ncandidates = 7\n",
+       "s.toml:5: localiser.candidates"},
       {"[localiser]\ncommand = \"./mine\"\n", "s.toml:4: localiser.command has no effect"},
       {"[localiser]\nmin_corners = 8\n", "s.toml:4: localiser.min_corners has no effect"},
       {"[localiser]\ncorners = true\n", "s.toml:4: localiser.corners has no effect"},
@@ -120,8 +121,9 @@ TEST(IdleSettings, AWorldMayHaveNothingToMove) {
       "[sources]\nmoved = 0.5\n[one_at_a_time]\ndesigns = [\"all_but\"]\nsources = [\"moved\"]\n");
   EXPECT_TRUE(check_settings_act(designed).empty());
   designed.world = study.world;
-  EXPECT_EQ(test::error_message([&] { check_settings_act(designed); })
-                .rfind("s.toml:7: one_at_a_time varies sources.moved", 0),
+  EXPECT_EQ(test::error_message([&] {
+              check_settings_act(designed);
+            }).rfind("s.toml:7: one_at_a_time varies sources.moved", 0),
             0u);
 }
 

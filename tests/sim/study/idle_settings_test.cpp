@@ -26,13 +26,7 @@ using namespace vernier::sim::internal;
 
 namespace {
 
-Study study_of(const std::string& text) {
-  return test::office_study("[study]\ntrials = 6\n" + text);
-}
-
-std::string complaint_of(const std::string& text) {
-  return test::error_message([&] { check_settings_act(study_of(text)); });
-}
+const std::string six_trials = "[study]\ntrials = 6\n";
 
 std::vector<std::string> idle_sources(const Study& study) {
   std::vector<std::string> keys;
@@ -74,8 +68,10 @@ TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
        "s.toml:5: one_at_a_time varies sources.corner_loss, which has no effect"},
   };
   for (const auto& one : cases) {
-    EXPECT_EQ(complaint_of(one.text).rfind(one.complaint, 0), one.complaint[0] == 's' ? 0u : 10u)
-        << one.text << complaint_of(one.text);
+    const Study study = test::office_study(six_trials + one.text);
+    const std::string complaint = test::error_message([&] { check_settings_act(study); });
+    EXPECT_EQ(complaint.rfind(one.complaint, 0), one.complaint[0] == 's' ? 0u : 10u)
+        << one.text << complaint;
   }
 }
 
@@ -89,25 +85,28 @@ TEST(IdleSettings, WhatActsInOneCellPassesAndSoDoDefaults) {
         "[sweep]\n\"sources.missed\" = [0, 0.1]\n\"sources.missed_alike\" = [0, 0.5]\n",
         "[map]\nrig = \"same\"\n[sweep]\n\"sources.calibration\" = [0, 1]\n",
         "[one_at_a_time]\ndesigns = [\"only\", \"all_but\", \"swept\"]\n"}) {
-    EXPECT_TRUE(idle_sources(study_of(text)).empty()) << text;
+    EXPECT_TRUE(idle_sources(test::office_study(six_trials + text)).empty()) << text;
   }
 }
 
 TEST(IdleSettings, SourcesThatFindNothingToActOnAreTold) {
   using Keys = std::vector<std::string>;
-  EXPECT_EQ(idle_sources(study_of("[sources]\ncorner_loss = 0.3\nmissed_alike = 0.5\n")),
+  EXPECT_EQ(idle_sources(test::office_study(six_trials +
+                                            "[sources]\ncorner_loss = 0.3\nmissed_alike = 0.5\n")),
             (Keys{"sources.corner_loss", "sources.missed_alike"}));
-  EXPECT_EQ(idle_sources(study_of("[sources]\nedge_loss = 0.3\n[localiser]\nmethod = \"corners\"\n"
-                                  "[sweep]\n\"sources.corner_loss\" = [0, 0.5]\n")),
+  EXPECT_EQ(idle_sources(test::office_study(
+                six_trials + "[sources]\nedge_loss = 0.3\n[localiser]\nmethod = \"corners\"\n"
+                             "[sweep]\n\"sources.corner_loss\" = [0, 0.5]\n")),
             Keys{"sources.edge_loss"});
-  EXPECT_EQ(idle_sources(study_of("[sources]\nlateral_shift_px = 0\nlateral_shift_mode = "
-                                  "\"independent\"\n")),
+  EXPECT_EQ(idle_sources(test::office_study(six_trials +
+                                            "[sources]\nlateral_shift_px = 0\nlateral_shift_mode = "
+                                            "\"independent\"\n")),
             Keys{"sources.lateral_shift_mode"});
-  EXPECT_EQ(idle_sources(study_of("[sources]\ncorner_loss = 0\n")), Keys{});
+  EXPECT_EQ(idle_sources(test::office_study(six_trials + "[sources]\ncorner_loss = 0\n")), Keys{});
 }
 
 TEST(IdleSettings, AWorldMayHaveNothingToMove) {
-  Study study = study_of("[sources]\nmoved = 0.5\n");
+  Study study = test::office_study(six_trials + "[sources]\nmoved = 0.5\n");
   ASSERT_TRUE(has_furniture(study.world));
   EXPECT_TRUE(check_settings_act(study).empty());
   for (WorldObject& object : study.world.objects) {
@@ -117,7 +116,8 @@ TEST(IdleSettings, AWorldMayHaveNothingToMove) {
   const std::vector<IdleSource> idle = check_settings_act(study);
   ASSERT_EQ(idle.size(), 1u);
   EXPECT_EQ(idle[0].reason, "the world workshop has no furniture");
-  Study designed = study_of(
+  Study designed = test::office_study(
+      six_trials +
       "[sources]\nmoved = 0.5\n[one_at_a_time]\ndesigns = [\"all_but\"]\nsources = [\"moved\"]\n");
   EXPECT_TRUE(check_settings_act(designed).empty());
   designed.world = study.world;
@@ -131,9 +131,10 @@ TEST(IdleSettings, AWorldMayHaveNothingToMove) {
 TEST(IdleSettings, DesignsTakeTheSourcesThatActOnTheMethod) {
   const auto varied = [](const std::string& method) {
     std::set<std::string> sources;
-    for (const StudyCell& cell : study_of("[localiser]\nmethod = \"" + method +
-                                          "\"\n[one_at_a_time]\ndesigns = [\"all_but\"]\n")
-                                     .file.cells) {
+    for (const StudyCell& cell :
+         test::office_study(six_trials + "[localiser]\nmethod = \"" + method +
+                            "\"\n[one_at_a_time]\ndesigns = [\"all_but\"]\n")
+             .file.cells) {
       if (!varied_source(cell).empty()) sources.insert(varied_source(cell));
     }
     return sources;

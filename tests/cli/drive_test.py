@@ -169,6 +169,8 @@ class Drive(verb_calls.ProgramCase):
             self.assertEqual(len(self.observations(f'{name}.jsonl')), steps + 1)
         self.assertEqual((self.folder / 'starts').read_text(), '.', 'started once')
         self.assertIn('cannot be started', self.refused('--command', './no_such_program'))
+        self.assertIn('--time-limit-s: there is no program',
+                      self.refused('--commands', 'log.jsonl', '--time-limit-s', 3))
 
     def test_steps_end_a_drive(self):
         told = self.done('--commands', 'log.jsonl', '--steps', 3)

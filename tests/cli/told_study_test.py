@@ -49,6 +49,43 @@ class NothingSeen(Told):
         self.assertEqual(json.loads(done.stdout).get('doubts', []), [])
 
 
+class WithoutEffect(Told):
+    def test_requests_are_refused_where_they_stand(self):
+        for text, of in (
+                ('[localiser]\nmethod = "pgh"\nlooks = 2\n', 'localiser.looks has no effect: localiser.method is "pgh"'),
+                ('[histograms]\nmax_lines = 40\n', 'histograms.max_lines has no effect: localiser.ranker is "view"'),
+                ('[sweep]\n"sources.corner_loss" = [0, 0.5]\n', 'sources.corner_loss has no effect')):
+            with self.subTest(text):
+                self.refused(STUDY + text, of)
+        # Where it begins only: what an older program stored can be read.
+        self.write(STUDY)
+        self.run_study()
+        copy = self.out / 'study.toml'
+        copy.write_text(copy.read_text() + '[localiser]\nmethod = "pgh"\nlooks = 2\n')
+        self.works('study', 'status', self.out)
+
+    def test_sources_are_told(self):
+        self.write(STUDY + '[sources]\nmoved = 0.5\ncorner_loss = 0.3\nmissed_alike = 0.2\n')
+        done = self.works('study', self.file, '-o', self.out, '--json')
+        told = [line for line in done.stderr.splitlines() if 'no effect' in line]
+        self.assertEqual([line.split(': ', 2)[2] for line in told],
+                         ['sources.corner_loss has no effect: localiser.method is "lines"',
+                          'sources.missed_alike has no effect: sources.missed is 0'])
+        self.write(STUDY.replace('small', 'loose') + '[sources]\nmoved = 0.5\n')
+        lines = ''.join(f'[[segment]]\nsegment = [[{x}, {y}, 0], [{x}, {y}, 2]]\n'
+                        for x in range(6) for y in (-2, 2))
+        (self.folder / 'loose.world.toml').write_text(
+            'format = "vernier/world"\nversion = 1\nname = "loose"\n'
+            '[[route]]\npoints_m = [[0, 0], [3, 0]]\n' + lines)
+        done = self.call('study', self.file, '-o', self.out, '--json')
+        self.assertIn('sources.moved has no effect: the world loose.world.toml has no furniture', done.stderr)
+
+    def test_a_rig_that_is_told_twice_is_named_at_its_line(self):
+        text = TOLD + 'file = "nominal"\n[sweep]\n"calibration.views" = [3, 5]\n'
+        line = text.splitlines().index('file = "nominal"') + 1
+        self.refused(text, f':{line}: rig.file has no effect')
+
+
 class NoCalibration(Told):
     def test_is_a_doubt_that_names_the_cell(self):
         self.write(TOLD + '[calibration]\nviews = 4\ndistance_m = 1000\n'

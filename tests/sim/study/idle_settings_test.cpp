@@ -15,6 +15,7 @@
 #include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/systems/systems.h"
 #include "sim/world.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_study.h"
@@ -35,6 +36,7 @@ std::vector<std::string> idle_sources(const Study& study) {
 }
 
 TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
+  register_systems();
   const struct {
     const char *text, *complaint;
   } cases[] = {
@@ -70,8 +72,7 @@ TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
   for (const auto& one : cases) {
     const Study study = test::office_study(six_trials + one.text);
     const std::string complaint = test::error_message([&] { check_settings_act(study); });
-    EXPECT_EQ(complaint.rfind(one.complaint, 0), one.complaint[0] == 's' ? 0u : 10u)
-        << one.text << complaint;
+    EXPECT_NE(complaint.find(one.complaint), std::string::npos) << one.text << complaint;
   }
 }
 

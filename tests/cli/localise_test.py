@@ -250,7 +250,10 @@ class Localise(verb_calls.ProgramCase):
         self.refused('localise', 'none.map', *ask[2:], says='none.map: ')
         self.refused(*ask, '--method', 'sift', says='unknown method')
         self.refused(*ask, '--candidates', '0', says='candidates')
-        self.refused(*ask, '--command', 'true', says='--method program')
+        for option, value, method in (('--command', 'true', 'lines'), ('--ranker', 'pgh', 'pgh'),
+                                      ('--stages', 'none', 'pgh_baseline'), ('--min-corners', '9', 'lines'),
+                                      ('--max-error-rate', '0.1', 'corners')):
+            self.refused(*ask, option, value, '--method', method, says=f'no effect on --method {method}')
         self.refused(*ask, '--world', 'workshop', says='more than one kind')
         self.refused('localise', 'rooms.map', says='no views are given')
         self.refused('localise', 'rooms.map', '--left', 'left.pgm', '--rig', 'rig.json', says='one camera')

@@ -72,7 +72,7 @@ class WithoutEffect(Told):
                          ['sources.corner_loss has no effect: localiser.method is "lines"',
                           'sources.missed_alike has no effect: sources.missed is 0'])
         self.write(STUDY.replace('small', 'loose') + '[sources]\nmoved = 0.5\n')
-        lines = ''.join(f'[[segment]]\nsegment = [[{x}, {y}, 0], [{x}, {y}, 2]]\n'
+        lines = ''.join(f'[[segment]]\nsegment = [{x}, {y}, 0, {x}, {y}, 2]\n'
                         for x in range(6) for y in (-2, 2))
         (self.folder / 'loose.world.toml').write_text(
             'format = "vernier/world"\nversion = 1\nname = "loose"\n'

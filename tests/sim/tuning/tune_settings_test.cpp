@@ -133,7 +133,7 @@ TEST(TuneSettings, AConfirmationLeavesOutWhatItsCandidateDoesNotUse) {
   EXPECT_EQ(confirmed(1).looks, 2);  // lines
   EXPECT_EQ(confirmed(1).localiser.ranker, "pgh");
   EXPECT_EQ(confirmed(3).looks, 1);  // pgh
-  EXPECT_EQ(confirmed(3).localiser.ranker, LocaliserOptions().ranker);
+  EXPECT_EQ(confirmed(3).localiser.ranker, localise::LocaliserOptions().ranker);
   EXPECT_EQ(confirmed(5).localiser.command, "./mine");
   EXPECT_EQ(confirmed(5).looks, 2);
 }

@@ -17,7 +17,7 @@
 #include "calib/base/instruction_set.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/camera.h"
 #include "calib/lens_models.h"
 #include "calib/mrcal/mrcal_problem.h"

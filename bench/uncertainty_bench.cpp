@@ -11,7 +11,7 @@
 
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/lens_models.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"

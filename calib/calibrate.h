@@ -43,15 +43,15 @@ struct CalibrationOptions {
 /// with r the reprojection residual, W = σ² I and an optional prior (a_0, C_0), over the rig's
 /// parameters and one board pose per frame, by Ceres (calib/solver/minimise_reprojection.h). The
 /// first camera is the rig's frame. Outlier corners are excluded and listed. The result holds the
-/// minimum variance bound, the evidence, and as its covariance the honest one: clustered by frame
-/// with at least three frames per parameter, its small-sample form with fewer (kind "jackknife"). A
-/// held parameter has no variance. If σ is estimated and there is a prior, σ and the solution are
-/// found in turn; the degrees of freedom do not count the part of the parameters that the prior
-/// determines. With random effects the rig is that of their cost (calib/noise/random_effects.h),
-/// the bound its inverse information and the covariance clustered as above, its small-sample form
-/// with the shape of that bound; noise and residuals of
-/// the summary stay those of the cost above. Throws Error, naming what is undetermined, if
-/// observations and prior do not determine the rig.
+/// minimum variance bound, the evidence, and as its covariance the honest one, from the scatter of
+/// the frames (calib/calibration/cluster_robust_covariance.h), of kind "clustered" with at least
+/// three frames per parameter, "jackknife" with fewer. A held parameter has no variance. If σ is
+/// estimated and there is a prior, σ and the solution are found in turn; the degrees of freedom do
+/// not count the part of the parameters that the prior determines. With random effects the rig is
+/// that of their cost (calib/noise/random_effects.h), the bound its inverse information and the
+/// covariance from the scatter as above, with few frames in the shape of that bound; noise and
+/// residuals of the summary stay those of the cost above. Throws Error, naming what is
+/// undetermined, if observations and prior do not determine the rig.
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options = {});
 
 }  // namespace vernier

@@ -54,11 +54,11 @@ struct JointCalibration {
 /// Tukey's with limit 5, both by iterated weights and balanced against the quadratic terms
 /// (calib/solver/loss.h); a pair with final weight 0 is an outlier, listed and not counted.
 /// Covariance: the sandwich A⁻¹ (B + P) A⁻¹ at the minimum, A = P + m Σ J Jᵀ
-/// (calib/solver/pair_equations.h), B the scatter of the scores clustered by frame and image pair;
-/// below three clusters per parameter its small-sample form
-/// (calib/calibration/small_sample_covariance.h). If there are fewer than three image pairs and no
-/// board, image pairs are split into cells of 4 x 4 of the left image, assuming that the noise of
-/// different cells is independent. `covariance_mvb` is the bound of the inliers.
+/// (calib/solver/pair_equations.h), B the scatter of the scores clustered by frame and image pair,
+/// shrunk towards the shape of the bound (calib/calibration/cluster_robust_covariance.h). If there
+/// are fewer than three image pairs and no board, image pairs are split into cells of 4 x 4 of the
+/// left image, assuming that the noise of different cells is independent. `covariance_mvb` is the
+/// bound of the inliers.
 ///
 /// Throws Error if the terms leave a direction undetermined (naming it), or do not belong to one
 /// rig.

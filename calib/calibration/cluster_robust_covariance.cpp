@@ -2,27 +2,144 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration/cluster_robust_covariance.h"
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
-#include "calib/calibration/covariance_estimators.h"
-#include "calib/calibration/small_sample_covariance.h"
+#include "calib/base/decompositions.h"
 #include "calib/covariance.h"
+#include "calib/error.h"
 #include "calib/solver/normal_equations.h"
 
 namespace vernier::internal {
+namespace {
+
+/// V diag(values) Vᵀ
+Eigen::MatrixXd with_eigenvalues(const Eigen::MatrixXd& V, const Eigen::VectorXd& values) {
+  const Eigen::MatrixXd scaled = V * values.asDiagonal();
+  return scaled * V.transpose();
+}
+
+/// Aᵀ M A
+Eigen::MatrixXd congruent(const Eigen::MatrixXd& M, const Eigen::MatrixXd& A) {
+  const Eigen::MatrixXd MA = M * A;
+  return A.transpose() * MA;
+}
+
+/// The part of a view in the estimate, corrected for its leverage.
+struct Pull {
+  Eigen::VectorXd u;        ///< (I − H)^(-1/2) x
+  Eigen::MatrixXd missing;  ///< of E u uᵀ at a noise of 1, by directions it alone determines
+};
+
+/// For a symmetric H with eigenvalues in [0, 1]. A view that alone determines a direction
+/// (eigenvalue 1) has no residual along it and its pull there says nothing; eigenvalues are limited
+/// to just below 1.
+Pull corrected_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) {
+  constexpr double most = 0.999;
+  const SymmetricEigen eigen(0.5 * (H + H.transpose()));
+  const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(1.0);
+  const Eigen::ArrayXd limited = h.min(most);
+  const Eigen::MatrixXd& V = eigen.eigenvectors();
+  Pull pull{V * ((1 - limited).rsqrt() * (V.transpose() * x).array()).matrix(), {}};
+  if (h.maxCoeff() > most) {
+    // E u uᵀ = V h (1 − h) / (1 − limited) Vᵀ, and should be V h Vᵀ
+    const Eigen::ArrayXd lost = h - h * (1 - h) / (1 - limited);
+    pull.missing = with_eigenvalues(V, lost);
+  }
+  return pull;
+}
+
+/// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target by Ledoit and Wolf.
+double ledoit_wolf_intensity(const Eigen::MatrixXd& pulls,
+                             const Eigen::MatrixXd& J,
+                             const Eigen::MatrixXd& target) {
+  const auto n = static_cast<double>(pulls.cols());
+  const double spread = (J - target).squaredNorm();
+  if (!(spread > 0)) return 1;
+  double scatter = 0;
+  for (Eigen::Index f = 0; f < pulls.cols(); ++f) {
+    const Eigen::VectorXd u = pulls.col(f);
+    const Eigen::MatrixXd of_one = n * u * u.transpose();
+    scatter += (of_one - J).squaredNorm();
+  }
+  return std::min(1.0, scatter / (n * n) / spread);
+}
+
+/// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target for a Gaussian x in `p` dimensions, of
+/// which there are few `draws` (Chen, Wiesel, Eldar and Hero 2010, equation 23, "OAS").
+double oracle_approximating_intensity(const Eigen::MatrixXd& J,
+                                      const Eigen::MatrixXd& target,
+                                      double p,
+                                      Eigen::Index draws) {
+  p = std::max(2.0, p);
+  const auto n = static_cast<double>(draws);
+  const double spread = (n + 1 - 2 / p) * (J - target).squaredNorm();
+  if (!(spread > 0)) return 1;
+  return std::min(1.0, ((1 - 2 / p) * J.squaredNorm() + J.trace() * J.trace()) / spread);
+}
+
+/// The nearest symmetric matrix whose eigenvalues are at least 1.
+Eigen::MatrixXd at_least_identity(const Eigen::MatrixXd& M) {
+  const SymmetricEigen eigen(0.5 * (M + M.transpose()));
+  return with_eigenvalues(eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(1.0));
+}
+
+/// A covariance whose scale is the mean square of few pulls is too small by the variance of
+/// Student's t, ν / (ν − 2), for a view's pull has about four effective degrees of freedom.
+double student_variance(Eigen::Index frames) {
+  constexpr double of_a_view = 4;  // 3 fit smooth errors, 6 white noise
+  const double dof = of_a_view * static_cast<double>(frames - 1);
+  return dof / (dof - 2);
+}
+
+}  // namespace
 
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
                                      const std::vector<std::string>& names,
                                      BoundOf bound_of) {
-  constexpr double frames_per_parameter = 3;
-  const auto frames = static_cast<double>(equations.scores.cols());
-  if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
-    return {CovarianceKind::clustered, names,
-            clustered_sandwich(equations, bound, frames_per_parameter)};
+  constexpr Eigen::Index many_per_parameter = 3;
+  const auto p = bound.rows();
+  const auto frames = static_cast<Eigen::Index>(equations.frame_information.size());
+  if (frames < 3) {
+    throw Error("cluster-robust covariance", "fewer than three frames", "give more views");
   }
-  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound, bound_of)};
+  const bool has_many = frames >= many_per_parameter * p;
+  const Eigen::MatrixXd L = Cholesky(bound).lower();
+  Eigen::MatrixXd pulls(p, frames), missing = Eigen::MatrixXd::Zero(p, p);
+  for (Eigen::Index f = 0; f < frames; ++f) {
+    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
+    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
+    pulls.col(f) = pull.u;
+    if (pull.missing.size() > 0) missing += pull.missing;
+  }
+  Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
+  if (equations.prior_information.size() > 0) {
+    prior_share = congruent(equations.prior_information, L);
+    pulls.colwise() -= pulls.rowwise().mean().eval();  // their sum is the prior's pull, no scatter
+  }
+  const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
+  const double dimensions = data_share.trace();  // that the data determine
+  const Eigen::MatrixXd scatter = pulls * pulls.transpose();
+  // mean variance over the bound's, where the scatter of views shows it
+  const double inflation = scatter.trace() / std::max(dimensions - missing.trace(), 1e-9);
+  const Eigen::MatrixXd J = scatter + inflation * missing;
+  Eigen::MatrixXd shrunk;
+  if (bound_of == BoundOf::random_effects && !has_many) {
+    shrunk = std::max(1.0, inflation) * data_share;
+  } else {
+    const Eigen::MatrixXd target = inflation * data_share;
+    const double alpha =
+        std::max(ledoit_wolf_intensity(pulls, J, target),
+                 oracle_approximating_intensity(J, target, dimensions, frames - 1));
+    shrunk = student_variance(frames) * ((1 - alpha) * J + alpha * target);
+  }
+  const Eigen::MatrixXd matrix = congruent(at_least_identity(shrunk + prior_share), L.transpose());
+  return {has_many ? CovarianceKind::clustered : CovarianceKind::jackknife, names,
+          0.5 * (matrix + matrix.transpose())};
 }
 
 }  // namespace vernier::internal

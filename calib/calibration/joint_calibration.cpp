@@ -13,9 +13,9 @@
 
 #include "calib/board_state.h"
 #include "calib/calibration/cluster_robust_covariance.h"
-#include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/joint_minimum.h"
 #include "calib/calibration/merged_boards.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
 #include "calib/calibration/pair_sides.h"

@@ -19,7 +19,7 @@
 #include "calib/board_target.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/calibration_problem.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
 #include "calib/camera/model_nesting.h"

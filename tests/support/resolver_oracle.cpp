@@ -14,7 +14,7 @@
 #include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
 #include "calib/estimate/held_parameters.h"

@@ -15,14 +15,15 @@ const PARAMETER_MEANING = [
   [/\.t([xyz])_m$/, "offset along $1, m"],
 ];
 
+const FROM_SCATTER = "They are estimated from the scatter between frames, corrected for their"
+  + " number and shrunk towards the shape of the bound (cluster-robust sandwich covariance), so"
+  + " they include model and target errors that vary from frame to frame.";
+
 const KIND_MEANING = {
   mvb: "They are the minimum variance bound, which only includes corner noise and is too small"
     + " for real images.",
-  clustered: "They are estimated from the scatter between frames (cluster-robust sandwich"
-    + " covariance), so they include model and target errors that vary from frame to frame.",
-  jackknife: "They are estimated from the scatter between frames, corrected for few frames and"
-    + " shrunk towards the shape of the bound (small-sample, jackknife-type covariance), so they"
-    + " include model and target errors that vary from frame to frame.",
+  clustered: FROM_SCATTER,
+  jackknife: FROM_SCATTER,
   prior: "They are assumed, not measured.",
   combined: "They combine a prior with measurements.",
 };

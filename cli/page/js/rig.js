@@ -12,10 +12,10 @@ import { tile } from "./study.js";
 import { views_content } from "./view_influence.js";
 
 const KIND_REASON = {
-  jackknife: (frames, free) => "small-sample sandwich (kind jackknife), because" + ` ${frames}`
-    + ` frames for ${free} parameters are fewer than three per parameter`,
-  clustered: (frames, free) => "sandwich clustered by frame, because" + ` ${frames} frames for`
-    + ` ${free} parameters are at least three per parameter`,
+  jackknife: (frames, free) => "from the scatter of the frames, shrunk (kind jackknife:"
+    + ` ${frames} frames for ${free} parameters are fewer than three per parameter)`,
+  clustered: (frames, free) => "from the scatter of the frames, shrunk (kind clustered:"
+    + ` ${frames} frames for ${free} parameters)`,
   mvb: (frames, free, rig) => "minimum variance bound: corner noise is assumed to be"
     + ` white${rig.true_bound ? ", which agrees with the scatter of the views" : ""}`,
   prior: () => "from the rig file: assumed, not measured",

@@ -8,7 +8,7 @@
 
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/error.h"
 #include "calib/lens_models.h"
 #include "calib/pose.h"

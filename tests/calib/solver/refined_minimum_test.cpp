@@ -8,7 +8,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"

@@ -12,7 +12,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "calib/base/decompositions.h"
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"

@@ -117,11 +117,10 @@ TEST(TuneSettings, AConfirmationLeavesOutWhatItsCandidateDoesNotUse) {
   const std::string text =
       "[study]\n[localiser]\ncommand = \"./mine\"\nranker = \"pgh\"\n[sweep]\n"
       "\"localiser.method\" = [\"lines\", \"pgh\", \"program\"]\n\"localiser.looks\" = [1, 2]\n"
-      "[tune]\nconfirm_worlds = [\"workshop\"]\n";
+      "[tune]\nconfirm_worlds = [\"c\"]\n";
   const Study study = test::office_study(text);
   EXPECT_TRUE(check_settings_act(study).empty());
-  TuneSettings settings;
-  settings.confirm_worlds = {"workshop"};
+  const TuneSettings settings = parse_tune(text, "t.toml", study.file);
   const std::vector<Candidate> candidates = candidates_of(study.file, settings, "t.toml");
   ASSERT_EQ(candidates.size(), 6u);
   const auto confirmed = [&](std::size_t i) {

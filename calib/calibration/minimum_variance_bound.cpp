@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/minimum_variance_bound.h"
 
-#include <fmt/format.h>
 #include <Eigen/LU>
-#include <cmath>
 
 #include "calib/base/decompositions.h"
 #include "calib/covariance.h"
@@ -35,29 +33,6 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
   const Eigen::MatrixXd inverse = Cholesky(scaled).inverse();
   const Eigen::MatrixXd C = scale.asDiagonal() * inverse * scale.asDiagonal();
   return 0.5 * (C + C.transpose());
-}
-
-Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
-                                   const Eigen::MatrixXd& bound,
-                                   double frames_per_parameter) {
-  const auto frames = static_cast<double>(equations.scores.cols());
-  const auto parameters = static_cast<double>(bound.rows());
-  if (frames < frames_per_parameter * parameters) {
-    throw Error("clustered covariance",
-                fmt::format("{} frames are too few for {} parameters", frames, parameters),
-                fmt::format("give at least {}", std::ceil(frames_per_parameter * parameters)));
-  }
-  if (equations.prior_information.size() == 0) {
-    const Eigen::MatrixXd influence = bound * equations.scores;
-    return frames / (frames - 1) * influence * influence.transpose();
-  }
-  // With a prior, the scores sum to its gradient, which is no scatter, and it adds its own
-  // information.
-  const Eigen::MatrixXd centred =
-      equations.scores.colwise() - equations.scores.rowwise().mean().eval();
-  const Eigen::MatrixXd influence = bound * centred;
-  return frames / (frames - 1) * influence * influence.transpose() +
-         bound * equations.prior_information * bound;
 }
 
 }  // namespace vernier::internal

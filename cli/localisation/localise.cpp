@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/localiser.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -61,11 +64,43 @@ void check_pair(const PlaceView& view, const LocaliseArguments& options, const s
               "give --method pgh");
 }
 
+/// Whether two views hold the same lines and corners, as far as a map's file keeps them.
+bool is_same_view(const PlaceView& a, const PlaceView& b) {
+  constexpr double least_m = 1e-5, least_px = 1e-3;
+  if (a.lines.empty() && a.corners.empty()) return false;
+  return std::equal(a.lines.begin(), a.lines.end(), b.lines.begin(), b.lines.end(),
+                    [](const PlaceLine& one, const PlaceLine& other) {
+                      return (one.a_m - other.a_m).norm() < least_m &&
+                             (one.b_m - other.b_m).norm() < least_m;
+                    }) &&
+         (a.corners.empty() || b.corners.empty() ||
+          std::equal(a.corners.begin(), a.corners.end(), b.corners.begin(), b.corners.end(),
+                     [](const StereoCorner& one, const StereoCorner& other) {
+                       return (one.left_px - other.left_px).norm() < least_px;
+                     }));
+}
+
+/// Says how many queries are views that the map was made of.
+void tell_own_views(const std::vector<RecordedLooks>& queries,
+                    const TopologicalMap& map,
+                    const Session& session) {
+  const auto own = std::count_if(queries.begin(), queries.end(), [&](const RecordedLooks& query) {
+    return std::any_of(map.nodes.begin(), map.nodes.end(), [&](const MapNode& node) {
+      return is_same_view(query.looks[0].view, node.view);
+    });
+  });
+  if (own == 0) return;
+  session.warn(fmt::format("{} of {} queries {} the map was made of: their answers do not tell "
+                           "how well it localises",
+                           own, queries.size(), own == 1 ? "is a view that" : "are views that"));
+}
+
 std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
                                              const TopologicalMap& map,
                                              const Localiser& localiser,
                                              Session& session) {
   const NamedViews recorded = read_recorded(options.views, session);
+  tell_own_views(recorded.views, map, session);
   std::vector<LocalisedQuery> queries;
   for (std::size_t i = 0; i < recorded.views.size(); ++i) {
     const RecordedLooks& seen = recorded.views[i];

@@ -137,6 +137,14 @@ class Localise(verb_calls.ProgramCase):
         self.assertEqual(len(rows), 7)
         self.assertAlmostEqual(float(rows[2].split(',')[2]), 20.1, delta=0.1)
 
+    def test_the_views_that_a_map_was_made_of_are_told(self):
+        self.map_of_rooms()
+        ask = ['localise', 'rooms.map', '--rig', 'nominal', '--features']
+        own = self.run_program(*ask, 'rooms.jsonl')
+        self.assertIn('queries are views that the map was made of', own.stderr)
+        write(self.folder / 'q.jsonl', [view(room(0), 0.1, pose=[0.1, 0, 0])])
+        self.assertNotIn('made of', self.run_program(*ask, 'q.jsonl').stderr)
+
     def test_truth_of_another_frame_is_a_doubt(self):
         self.map_of_rooms()
         write(self.folder / 'q.jsonl',

@@ -258,9 +258,10 @@ std::string ceiling_key(const Study& study, const StudyCell& cell) {
 }
 
 std::string calibration_key(const Study& study, const StudyCell& cell) {
-  std::string key = fmt::format("calibration {} {} {} {}", results_version, study.rig_fingerprint,
-                                cell.told.observations.empty() ? "" : study.corners_fingerprint,
-                                cell.experiment.seed);
+  constexpr int covariance = 2;  // 2: that of many views is shrunk
+  std::string key = fmt::format(
+      "calibration {}.{} {} {} {}", results_version, covariance, study.rig_fingerprint,
+      cell.told.observations.empty() ? "" : study.corners_fingerprint, cell.experiment.seed);
   for (const auto& [name, value] : settings_of(cell.told)) {
     if (!names_a_file(name)) key += fmt::format(" {}={}", name, value);
   }

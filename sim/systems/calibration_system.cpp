@@ -78,6 +78,7 @@ SystemKind calibration_kind() {
                     true}},
       .sections = {"calibration"},
       .calibrates = true,
+      .version = 2,  // 2: the covariance of many views is shrunk
       .make = [](const SystemSetup& setup) { return std::make_unique<CalibrationSystem>(setup); }};
 }
 

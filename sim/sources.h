@@ -79,6 +79,10 @@ std::span<const SourceParameter> source_parameters();
 /// The one of that name; null if there is none.
 const SourceParameter* source_parameter(std::string_view name);
 
+/// The setting that is 0 and without which a magnitude has no effect; null if there is none.
+const SourceParameter* switched_off_with(const SourceParameter& magnitude,
+                                         const SourceSettings& settings);
+
 /// Throws Error naming the setting for a value out of range, and a command that is none.
 void check(const SourceSettings& settings, const std::string& place);
 

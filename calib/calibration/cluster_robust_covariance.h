@@ -40,8 +40,8 @@ enum class BoundOf { white_noise, random_effects };
 /// added.
 ///
 /// The scatter of few clusters may by chance be less than the bound, which no noise undercuts: in
-/// the directions in which the covariance is below C it is set to C (eigenvalues of L⁻¹ P L⁻ᵀ of at
-/// least 1).
+/// the directions in which the covariance V is below C it is set to C (eigenvalues of L⁻¹ V L⁻ᵀ of
+/// at least 1).
 ///
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of fewer than three frames per parameter, is far from it in most directions:

@@ -64,20 +64,20 @@ void check_pair(const PlaceView& view, const LocaliseArguments& options, const s
               "give --method pgh");
 }
 
-/// Whether two views hold the same lines and corners, as far as a map's file keeps them.
+/// Whether two views hold the same lines, or corners where there are none, as far as a map's file
+/// keeps them.
 bool is_same_view(const PlaceView& a, const PlaceView& b) {
   constexpr double least_m = 1e-5, least_px = 1e-3;
   if (a.lines.empty() && a.corners.empty()) return false;
-  return std::equal(a.lines.begin(), a.lines.end(), b.lines.begin(), b.lines.end(),
-                    [](const PlaceLine& one, const PlaceLine& other) {
-                      return (one.a_m - other.a_m).norm() < least_m &&
-                             (one.b_m - other.b_m).norm() < least_m;
-                    }) &&
-         (a.corners.empty() || b.corners.empty() ||
-          std::equal(a.corners.begin(), a.corners.end(), b.corners.begin(), b.corners.end(),
-                     [](const StereoCorner& one, const StereoCorner& other) {
-                       return (one.left_px - other.left_px).norm() < least_px;
-                     }));
+  const auto is_same_line = [&](const PlaceLine& one, const PlaceLine& other) {
+    return (one.a_m - other.a_m).norm() < least_m && (one.b_m - other.b_m).norm() < least_m;
+  };
+  const auto is_same_corner = [&](const StereoCorner& one, const StereoCorner& other) {
+    return (one.left_px - other.left_px).norm() < least_px;
+  };
+  return std::equal(a.lines.begin(), a.lines.end(), b.lines.begin(), b.lines.end(), is_same_line) &&
+         (!a.lines.empty() || std::equal(a.corners.begin(), a.corners.end(), b.corners.begin(),
+                                         b.corners.end(), is_same_corner));
 }
 
 /// Says how many queries are views that the map was made of.
@@ -90,9 +90,10 @@ void tell_own_views(const std::vector<RecordedLooks>& queries,
     });
   });
   if (own == 0) return;
-  session.warn(fmt::format("{} of {} queries {} the map was made of: their answers do not tell "
-                           "how well it localises",
-                           own, queries.size(), own == 1 ? "is a view that" : "are views that"));
+  session.warn(
+      fmt::format("{} of {} queries {} the map was made of: their answers do not tell "
+                  "how well it localises",
+                  own, queries.size(), own == 1 ? "is a view that" : "are views that"));
 }
 
 std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,

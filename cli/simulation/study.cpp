@@ -83,6 +83,7 @@ void run(const StudyArguments& options, Session& session) {
   job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
+  check_new_study(study, job.folder, session);
   tell_blocked_routes(study, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   run_in_folder(claim, study, std::move(job), "study", session);

@@ -192,18 +192,6 @@ void check_covariances(const Study& study) {
   }
 }
 
-/// Throws Error for settings without effect; says which sources have none.
-void check_settings(const Study& study, const Session& session) {
-  std::map<std::string, std::vector<std::string>> idle;  // sources by reason
-  for (IdleSource& source : check_settings_act(study)) {
-    idle[source.reason].push_back(std::move(source.key));
-  }
-  for (const auto& [reason, keys] : idle) {
-    session.warn(fmt::format("{}: {} {} no effect: {}", place_of(study.file, keys[0]),
-                             fmt::join(keys, ", "), keys.size() == 1 ? "has" : "have", reason));
-  }
-}
-
 enum class WithRig { yes, no };
 
 template <class FileOf>
@@ -272,15 +260,25 @@ Study load_study(const fs::path& file, Session& session) {
 Study load_study(const std::string& text, const fs::path& place, Session& session) {
   Study study = assemble_beside(parse_study(text, place.string()), place.parent_path(), session,
                                 WithRig::yes);
-  check_settings(study, session);
   check_covariances(study);
   return study;
 }
 
 Study load_inputs_without_rig(const StudyFile& study, const fs::path& beside, Session& session) {
-  Study read = assemble_beside(study, beside, session, WithRig::no);
-  check_settings(read, session);
-  return read;
+  return assemble_beside(study, beside, session, WithRig::no);
+}
+
+void check_new_study(const Study& study, const fs::path& folder, const Session& session) {
+  std::error_code unknown;
+  if (fs::exists(folder / study_copy, unknown)) return;
+  std::map<std::string, std::vector<std::string>> idle;  // sources by reason
+  for (IdleSource& source : check_settings_act(study)) {
+    idle[source.reason].push_back(std::move(source.key));
+  }
+  for (const auto& [reason, keys] : idle) {
+    session.warn(fmt::format("{}: {} {} no effect: {}", place_of(study.file, keys[0]),
+                             fmt::join(keys, ", "), keys.size() == 1 ? "has" : "have", reason));
+  }
 }
 
 Study open_folder(const fs::path& folder, Session& session) {

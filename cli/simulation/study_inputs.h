@@ -38,6 +38,12 @@ Study load_study(const std::filesystem::path& file, Session& session);
 /// The same of a text, as above.
 Study load_study(const std::string& text, const std::filesystem::path& place, Session& session);
 
+/// Throws Error for settings without effect, and says which sources have none, unless the folder
+/// already holds a study: what was begun can be gone on with.
+void check_new_study(const Study& study,
+                     const std::filesystem::path& folder,
+                     const Session& session);
+
 /// A study with its inputs (of the folder `beside`) but for its true rig, for a caller that gives
 /// it one.
 Study load_inputs_without_rig(const StudyFile& study,

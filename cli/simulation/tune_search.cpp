@@ -190,6 +190,7 @@ void add_search(const Tuning& tuning,
 
 TuneResult tune_study(const TuneOptions& options, Session& session) {
   const Tuning tuning = load_tuning(options.file, session);
+  check_new_study(tuning.study, fs::path(options.folder) / search_folder, session);
   check_confirmation(tuning);
   check_folder(options.folder);
   RaceSearch search(tuning.study, tuning.candidates, tuning.settings);

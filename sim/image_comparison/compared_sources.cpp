@@ -25,9 +25,7 @@ namespace {
 using SumsByPair = std::map<int, Sums>;
 
 double default_of(std::string_view key) {
-  for (const SourceParameter& parameter : source_parameters()) {
-    if (parameter.name == key) return SourceSettings{}.*parameter.value;
-  }
+  if (const SourceParameter* found = source_parameter(key)) return SourceSettings{}.*found->value;
   throw Error("compared sources", "there is no setting '" + std::string(key) + "'",
               "use one of docs/simulation.md");
 }

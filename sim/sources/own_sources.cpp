@@ -61,11 +61,8 @@ class SourceRegistry {
  private:
   /// Keys of [sources] in a study.
   static bool is_taken(const std::string& name) {
-    for (const SourceParameter& parameter : source_parameters()) {
-      if (parameter.name == name) return true;
-    }
-    return name == "file" || name == "lateral_shift_mode" || name == "own" || name == "command" ||
-           name == "time_limit_s" || name == "none";
+    return source_parameter(name) || name == "file" || name == "lateral_shift_mode" ||
+           name == "own" || name == "command" || name == "time_limit_s" || name == "none";
   }
 
   mutable std::mutex mutex_;

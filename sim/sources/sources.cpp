@@ -69,6 +69,13 @@ const SourceParameter* source_parameter(std::string_view name) {
   return found == std::end(parameters) ? nullptr : found;
 }
 
+const SourceParameter* switched_off_with(const SourceParameter& magnitude,
+                                         const SourceSettings& settings) {
+  if (magnitude.only_with.empty()) return nullptr;
+  const SourceParameter* with = source_parameter(magnitude.only_with);
+  return settings.*with->value == 0 ? with : switched_off_with(*with, settings);
+}
+
 void check(const SourceSettings& settings, const std::string& place) {
   for (const SourceParameter& parameter : parameters) {
     const double value = settings.*parameter.value;

@@ -54,30 +54,37 @@ std::string why_histograms_idle(std::string_view name, const StudyCell& cell) {
   return "histograms.blur is " + in_quotes(std::string(localise::name(histograms.blur)));
 }
 
+/// Whether the method looks at corners, and not only their cost is paid.
+bool looks_at_corners(const ExperimentSettings& settings) {
+  return needs_corners(settings.method, settings.localiser) &&
+         uses_option(settings.method, "corners");
+}
+
 bool sees(SourceTarget target, const StudyCell& cell) {
-  const ExperimentSettings& settings = cell.experiment;
   if (target == SourceTarget::view) return true;
   if (!cell.system.is_localiser()) return target == SourceTarget::edges;
-  return target == SourceTarget::edges ? uses_lines(settings.method)
-                                       : needs_corners(settings.method, settings.localiser);
+  return target == SourceTarget::edges ? uses_lines(cell.experiment.method)
+                                       : looks_at_corners(cell.experiment);
+}
+
+std::string why_unseen(SourceTarget target, const StudyCell& cell) {
+  if (sees(target, cell)) return {};
+  return cell.system.is_localiser() ? method_is(cell)
+                                    : system_kind(cell.system.name).noun + " sees no corners";
 }
 
 std::string why_source_idle(const std::string& name, const StudyCell& cell) {
   const SourceSettings& sources = cell.experiment.sources;
   if (name == "time_limit_s") return sources.command.empty() ? "sources.command is not set" : "";
   if (name == "lateral_shift_mode") {
-    return sources.lateral_shift_px == 0 ? "sources.lateral_shift_px is 0" : "";
+    const std::string why = why_unseen(SourceTarget::edges, cell);
+    return why.empty() && sources.lateral_shift_px == 0 ? "sources.lateral_shift_px is 0" : why;
   }
   const SourceParameter* source = source_parameter(name);
   if (!source) return {};
-  if (!sees(source->acts_on, cell)) {
-    return cell.system.is_localiser() ? method_is(cell)
-                                      : system_kind(cell.system.name).noun + " sees no corners";
-  }
-  if (source->only_with.empty()) return {};
-  const SourceParameter& with = *source_parameter(source->only_with);
-  return sources.*with.value == 0 ? key_of(with) + " is 0"
-                                  : why_source_idle(std::string(source->only_with), cell);
+  if (std::string why = why_unseen(source->acts_on, cell); !why.empty()) return why;
+  const SourceParameter* off = switched_off_with(*source, sources);
+  return off ? key_of(*off) + " is 0" : "";
 }
 
 /// The same where the cell's world is known.
@@ -107,22 +114,26 @@ std::string why_idle_in_all(const std::string& key, const Study& study) {
   return first;
 }
 
-/// Whether a setting has its default in all cells, or they do not list it.
-bool is_usual(const std::string& key, const StudyFile& study) {
-  const std::map<std::string, std::string> usual = settings_of(ExperimentSettings());
-  const auto known = usual.find(key);
-  return std::all_of(study.cells.begin(), study.cells.end(), [&](const StudyCell& cell) {
-    const auto set = cell.settings.find(key);
-    if (set == cell.settings.end()) return true;
-    return known != usual.end() && set->second == known->second;
-  });
+/// Settings that cells list only where they are used.
+std::map<std::string, std::string> unlisted_settings(const ExperimentSettings& settings) {
+  return {{"corners.view_change", fmt::format("{}", settings.appearance.view_change)},
+          {"corners.noise", fmt::format("{}", settings.appearance.noise)},
+          {"localiser.min_corners", fmt::format("{}", settings.localiser.min_corners)},
+          {"sources.time_limit_s", fmt::format("{}", settings.sources.time_limit_s)}};
 }
 
-/// Listed of cells that use it only.
-bool is_listed_where_used(const std::string& key) {
-  return key.starts_with("corners.") || key == "localiser.min_corners" ||
-         key == "localiser.command" || key == "localiser.time_limit_s" ||
-         key == "sources.time_limit_s";
+/// Whether a setting has its default in all cells.
+bool is_usual(const std::string& key, const StudyFile& study) {
+  if (key == "localiser.command" || key == "localiser.time_limit_s") return false;
+  auto usual = settings_of(ExperimentSettings());
+  usual.merge(unlisted_settings(ExperimentSettings()));
+  const auto known = usual.find(key);
+  return std::all_of(study.cells.begin(), study.cells.end(), [&](const StudyCell& cell) {
+    auto all = cell.settings;
+    all.merge(unlisted_settings(cell.experiment));
+    const auto set = all.find(key);
+    return set == all.end() || (known != usual.end() && set->second == known->second);
+  });
 }
 
 /// Whether it describes images, not what looks at them or how.
@@ -147,6 +158,7 @@ bool is_off_in_all(const std::string& key, const StudyFile& study) {
 }
 
 void check_designs(const Study& study) {
+  if (study.file.lines.count("one_at_a_time.sources") == 0) return;  // it was not asked for
   for (const StudyCell& cell : study.file.cells) {
     const std::string source = varied_source(cell);
     if (source.empty()) continue;
@@ -171,9 +183,7 @@ std::string why_idle(const std::string& key, const StudyCell& cell) {
   if (!cell.system.is_localiser()) return {};
   if (section == "localiser") return why_localiser_idle(name, cell);
   if (section == "histograms") return why_histograms_idle(name, cell);
-  if (section == "corners") {
-    return needs_corners(settings.method, settings.localiser) ? "" : method_is(cell);
-  }
+  if (section == "corners") return looks_at_corners(settings) ? "" : method_is(cell);
   if (key == "map.rig" && settings.sources.calibration == 0) return "sources.calibration is 0";
   return {};
 }
@@ -188,11 +198,9 @@ std::vector<IdleSource> check_settings_act(const Study& study) {
     const std::string reason = why_idle_in_all(key, study);
     if (reason.empty()) continue;
     const auto& swept = file.sweep_keys;
-    if (std::find(swept.begin(), swept.end(), key) != swept.end() || is_listed_where_used(key)) {
-      refuse(key, reason, file);
-    }
-    if (is_usual(key, file)) continue;
-    if (!is_source_of_error(key)) refuse(key, reason, file);
+    const bool is_swept = std::find(swept.begin(), swept.end(), key) != swept.end();
+    if (!is_swept && is_usual(key, file)) continue;
+    if (is_swept || !is_source_of_error(key)) refuse(key, reason, file);
     if (!is_off_in_all(key, file)) idle.push_back({key, reason});
   }
   return idle;

@@ -144,7 +144,8 @@ std::vector<const SourceParameter*> chosen_sources(const StudyCell& cell,
     }
   }
   if (chosen.empty()) {
-    throw Error(designs.sources_place, "one_at_a_time: no source is on", "set one in [sources]");
+    throw Error(designs.sources_place, "one_at_a_time: no source is on that can act",
+                "set one in [sources]");
   }
   return chosen;
 }

@@ -16,7 +16,6 @@
 #include "calib/base/toml_reader.h"
 #include "calib/base/toml_writer.h"
 #include "calib/error.h"
-#include "sim/study/idle_settings.h"
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
@@ -163,21 +162,6 @@ class TuneReader : private SettingsReader {
   const StudyFile& study_;
 };
 
-/// Removes what the candidate does not use, as the ranker of another method.
-void remove_idle_settings(toml::table& study, const std::string& place) {
-  const StudyFile read = parse_study(toml_text(study), place);
-  for (const auto& [key, line] : read.lines) {
-    const std::size_t dot = key.find('.');
-    toml::table* section =
-        dot == std::string::npos ? nullptr : study.get_as<toml::table>(key.substr(0, dot));
-    if (!section) continue;
-    const bool acts =
-        std::any_of(read.cells.begin(), read.cells.end(),
-                    [&, key = key](const StudyCell& cell) { return why_idle(key, cell).empty(); });
-    if (!acts) section->erase(key.substr(dot + 1));
-  }
-}
-
 /// A list of texts as TOML.
 toml::array texts(const std::vector<std::string>& from) {
   toml::array list;
@@ -244,7 +228,6 @@ std::string confirmation_text(const std::string& text,
     sweep.insert(std::string(searched_world), texts(settings.confirm_worlds));
   }
   if (!sweep.empty()) study.insert("sweep", std::move(sweep));
-  remove_idle_settings(study, place);
   return "# Made by vernier tune: confirms " + candidate.label + "\n" + toml_text(study);
 }
 

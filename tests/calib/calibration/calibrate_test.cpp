@@ -62,14 +62,13 @@ TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
   const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, {.seed = 6, .frames = 60});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::clustered);
-  // White noise: both say the same within the sandwich's own scatter.
   const Eigen::ArrayXd ratio =
       estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array();
-  EXPECT_GT(ratio.minCoeff(), 0.5);
-  EXPECT_LT(ratio.maxCoeff(), 2.0);
+  EXPECT_GT(ratio.minCoeff(), 1 - 1e-9);  // white noise
+  EXPECT_LT(ratio.maxCoeff(), 1.7);
 }
 
-TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
+TEST(Calibrate, FewFramesGetTheSameByAnotherName) {
   const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 6, .frames = 13});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
@@ -81,14 +80,14 @@ TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
             CovarianceKind::mvb);
 }
 
-TEST(Calibrate, TheCovarianceOfFewFramesIsNowhereBelowTheBound) {
-  for (const int frames : {3, 5, 8}) {
+TEST(Calibrate, TheCovarianceIsNowhereBelowTheBound) {
+  for (const int frames : {3, 5, 8, 60}) {
     for (const bool known : {false, true}) {
       CalibrationOptions options;
       if (known) options.known = {{"left.f_px", 510, 5}, {"right.k1", 0, 0.01}};
       const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 19, .frames = frames});
       const RigEstimate estimate = calibrate(board.observations, options);
-      ASSERT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
+      ASSERT_NE(estimate.covariance->kind, CovarianceKind::mvb);
       const vernier::internal::Cholesky bound(*estimate.covariance_mvb);
       const Eigen::MatrixXd half = bound.solve_lower(estimate.covariance->matrix).transpose();
       const Eigen::VectorXd ratios =

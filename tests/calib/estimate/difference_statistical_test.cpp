@@ -55,8 +55,8 @@ TEST(RigDifference, PValuesOfIndependentCalibrationsAreUniform) {
 }
 
 // 100 pairs of 13 views each with errors that are smooth over a view, seeds 7100 and 7300. The
-// bound calls nearly all of them different; the small-sample covariance is itself an estimate, so
-// its p-values are near uniform only: at most 15 % fall below 5 %.
+// bound calls nearly all of them different; the covariance from the scatter is itself an estimate,
+// so its p-values are near uniform only: at most 15 % fall below 5 %.
 TEST(RigDifference, HonestCovarianceRarelyCallsCorrelatedNoiseADifference) {
   const Rig truth = test::stereo_rig();
   int honest = 0, bound = 0;

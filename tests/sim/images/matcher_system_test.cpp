@@ -17,6 +17,7 @@
 #include "sim/image_systems/matcher_system.h"
 #include "sim/study/study_file.h"
 #include "sim/study/system_kind.h"
+#include "sim/study/system_reader.h"
 #include "sim/study/system_under_test.h"
 #include "sim/told_rigs.h"
 #include "tests/support/error_message.h"
@@ -154,7 +155,7 @@ TEST(MatcherSystem, ATrialOfAProgramThatFailsSaysWhy) {
 
 TEST(MatcherSystem, ACommandIsOfAProgram) {
   const auto complaint = [](const std::string& options) {
-    return test::error_message([&] { matcher_study(options); });
+    return test::error_message([&] { check_options_are_used(matcher_study(options)); });
   };
   EXPECT_NE(complaint("matcher = \"program\"\n").find("'command'"), std::string::npos);
   EXPECT_NE(complaint("command = \"m {left} {right} {output}\"\n")

@@ -12,11 +12,8 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
-#include "sim/study/idle_settings.h"
-#include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/tuning/objective.h"
-#include "tests/support/example_study.h"
 
 namespace vernier {
 
@@ -110,31 +107,6 @@ TEST(TuneSettings, AConfirmationDiffersInWorldsSeedAndTrialsOnly) {
       EXPECT_TRUE(found) << candidate.label;
     }
   }
-}
-
-// A race may set what only some candidates use; a study of one that does not would be refused.
-TEST(TuneSettings, AConfirmationLeavesOutWhatItsCandidateDoesNotUse) {
-  const std::string text =
-      "[study]\n[localiser]\ncommand = \"./mine\"\nranker = \"pgh\"\n[sweep]\n"
-      "\"localiser.method\" = [\"lines\", \"pgh\", \"program\"]\n\"localiser.looks\" = [1, 2]\n"
-      "[tune]\nconfirm_worlds = [\"c\"]\n";
-  const Study study = test::office_study(text);
-  EXPECT_TRUE(check_settings_act(study).empty());
-  const TuneSettings settings = parse_tune(text, "t.toml", study.file);
-  const std::vector<Candidate> candidates = candidates_of(study.file, settings, "t.toml");
-  ASSERT_EQ(candidates.size(), 6u);
-  const auto confirmed = [&](std::size_t i) {
-    const Study confirming =
-        test::office_study(confirmation_text(text, "t.toml", candidates[i], settings));
-    EXPECT_TRUE(check_settings_act(confirming).empty());
-    return confirming.file.cells.at(0).experiment;
-  };
-  EXPECT_EQ(confirmed(1).looks, 2);  // lines
-  EXPECT_EQ(confirmed(1).localiser.ranker, "pgh");
-  EXPECT_EQ(confirmed(3).looks, 1);  // pgh
-  EXPECT_EQ(confirmed(3).localiser.ranker, localise::LocaliserOptions().ranker);
-  EXPECT_EQ(confirmed(5).localiser.command, "./mine");
-  EXPECT_EQ(confirmed(5).looks, 2);
 }
 
 TEST(TuneSettings, RefusesWhatCannotBeRacedOrConfirmed) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -34,6 +35,33 @@ void warn_of_lost_views(const RigEstimate& rig, const std::string& name, Session
       "--board-distance-m and --pixel-sigma",
       name, rig.calibration->views));
 }
+
+namespace {
+
+constexpr double wide = 1.5;  ///< views allowed by one end of the scale over those by the other
+
+/// What to do about too few trials, with their number where it can be told: what they leave open
+/// shrinks with its square root.
+std::string more_trials(const PlanResult& plan) {
+  constexpr double most = 1e6;
+  double times = 0;
+  if (plan.scale && plan.scale->low > 0) {
+    const double open = 2 * std::log(plan.scale->high / plan.scale->low);
+    times = std::pow(open / std::log(wide), 2);
+  } else if (!plan.successes.empty()) {
+    const SuccessAt& best = plan.successes[0];
+    const double margin = best.success - plan.target.value;
+    const double open =
+        margin > 0 ? best.success - best.interval_95.low : best.interval_95.high - best.success;
+    times = std::pow(open / margin, 2);
+  }
+  const double wanted = times * plan.trials;
+  if (!(times > 1) || !(wanted <= most)) return "give more --trials";
+  const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(wanted)) - 1));
+  return fmt::format("give more --trials, some {:.0f}", unit * std::ceil(wanted / unit));
+}
+
+}  // namespace
 
 void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
   constexpr double unsure_below = 0.8;  // confidence of an interval of a factor of two
@@ -70,23 +98,23 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
   }
   if (!plan.needed) {
     session.add_trust_warning(
-        "whether the target can be reached at all is not clear from so few trials; give more "
-        "--trials");
+        "whether the target can be reached at all is not clear from so few trials; " +
+        more_trials(plan));
     return;
   }
   const ViewsNeeded& needed = *plan.needed;
   // Views go with the inverse square of the scale.
-  constexpr double wide = 1.5;
   const bool by_trials =
       plan.scale && std::pow(plan.scale->high / plan.scale->low, 2) > wide;  // also if low is 0
   if (!std::isfinite(needed.interval.high)) {
     session.add_trust_warning(
         "the number of views has no upper end, for the trials leave open whether the target can be "
-        "reached: give more --trials");
+        "reached: " +
+        more_trials(plan));
   } else if (needed.confidence < unsure_below) {
     session.add_trust_warning(fmt::format(
         "the number of views is known to a factor of two with {:.0f} % confidence only: {}{}",
-        100 * needed.confidence, by_trials ? "give more --trials, or " : "",
+        100 * needed.confidence, by_trials ? more_trials(plan) + ", or " : "",
         plan.from_calibration ? "take some more views and plan again"
                               : "calibrate from five views or more and plan from these"));
   }

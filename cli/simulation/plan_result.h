@@ -40,6 +40,7 @@ struct PlanResult {
   std::optional<ViewsNeeded> needed_by_all;
   std::vector<SdAfter> curve;
   std::vector<SuccessAt> successes;  ///< of a success rate
+  int trials = 0;                    ///< of each of them
   std::optional<ScaleNeeded> scale;
   double reference_sd_m = 0;  ///< of the depth at once the error that `successes` scale
   /// By the calibration's own covariance, of the quantity of `curve`; not a number if not known.

@@ -218,6 +218,7 @@ void allow_for_success(Study study, int threads, PlanResult& plan, Session& sess
                                     progress.emplace(session, "plan: blocks of trials");
                                   progress->update(done, total);
                                 }};
+  plan.trials = study.file.trials;
   plan.reference_sd_m = reference_sd;
   plan.successes = success_curve_about(study, plan.target.value, how);
   progress.reset();

@@ -188,6 +188,10 @@ class Plan(Base):
         self.refused('plan', '--success', '0.9', '--study', 's.toml', about='gone.json')
         fewer = self.json(*words, '--trials', '60', code=None)
         self.assertNotEqual(fewer['success'], plan['success'])
+        # It says how many are enough, give or take what so few tell.
+        wanted = int(re.search(r'give more --trials, some (\d+)', self.call(*words, '--trials', '60').stderr)[1])
+        self.assertGreater(wanted, 60)
+        self.assertNotIn('give more --trials', self.call(*words, '--trials', str(3 * wanted)).stderr)
 
     def test_more_views_than_are_tried(self):
         (self.folder / 'answer.py').write_text(ANSWERS)

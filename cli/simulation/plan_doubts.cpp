@@ -13,6 +13,7 @@
 #include "calib/rig_estimate.h"
 #include "cli/program/session.h"
 #include "cli/simulation/plan_result.h"
+#include "sim/study/success_curve.h"
 
 namespace vernier::cli {
 

@@ -366,10 +366,11 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   };
   estimate.covariance_mvb = expand(s.bound);
   const Covariance honest =
-      options.white_noise ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
-                          : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names,
-                                                      has_effects(options) ? BoundOf::random_effects
-                                                                           : BoundOf::white_noise);
+      options.white_noise
+          ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
+          : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names,
+                                      {.bound_of = has_effects(options) ? BoundOf::random_effects
+                                                                        : BoundOf::white_noise});
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
   if (summary.board_aspect) {
     add_scale_of_aspect(estimate.rig, summary.board_aspect->value, estimate.covariance->matrix);

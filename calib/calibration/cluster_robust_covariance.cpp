@@ -95,47 +95,75 @@ double student_variance(Eigen::Index frames) {
   return dof / (dof - 2);
 }
 
+/// Clusters whose noise is of one kind.
+struct Kind {
+  Eigen::MatrixXd pulls;    ///< one per column
+  Eigen::MatrixXd missing;  ///< their sum
+  Eigen::MatrixXd share;    ///< of the information, Σ H_f
+};
+
+/// Mean variance over the bound's, where the scatter shows it.
+double inflation_of(const Kind& kind, const Eigen::MatrixXd& scatter) {
+  const double seen = kind.share.trace() - kind.missing.trace();
+  return scatter.trace() / std::max(seen, 1e-9);
+}
+
+/// The variance of the kind's part in the estimate, which the bound says is its share.
+Eigen::MatrixXd shrunk_scatter(const Kind& kind) {
+  const Eigen::MatrixXd scatter = kind.pulls * kind.pulls.transpose();
+  const double inflation = inflation_of(kind, scatter);
+  const Eigen::MatrixXd J = scatter + inflation * kind.missing;
+  const Eigen::MatrixXd target = inflation * kind.share;
+  const Eigen::Index clusters = kind.pulls.cols();
+  const double alpha =
+      std::max(ledoit_wolf_intensity(kind.pulls, J, target),
+               oracle_approximating_intensity(J, target, kind.share.trace(), clusters - 1));
+  return student_variance(clusters) * ((1 - alpha) * J + alpha * target);
+}
+
 }  // namespace
 
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
                                      const std::vector<std::string>& names,
-                                     BoundOf bound_of) {
-  constexpr Eigen::Index many_per_parameter = 3;
+                                     const ClusterOptions& options) {
+  constexpr Eigen::Index many_per_parameter = 3, least = 3;
   const auto p = bound.rows();
   const auto frames = static_cast<Eigen::Index>(equations.frame_information.size());
-  if (frames < 3) {
+  if (frames < least) {
     throw Error("cluster-robust covariance", "fewer than three frames", "give more views");
   }
   const bool has_many = frames >= many_per_parameter * p;
   const Eigen::MatrixXd L = Cholesky(bound).lower();
-  Eigen::MatrixXd pulls(p, frames), missing = Eigen::MatrixXd::Zero(p, p);
+  Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
+  const bool has_prior = equations.prior_information.size() > 0;
+  if (has_prior) prior_share = congruent(equations.prior_information, L);
+  const Eigen::Index first = options.of_first_kind;
+  const bool is_mixed = first >= least && frames - first >= least;
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(p, p);
+  Kind all{Eigen::MatrixXd(p, frames), none, Eigen::MatrixXd::Identity(p, p) - prior_share};
+  Kind kinds[] = {{{}, none, none}, {{}, none, none}};
   for (Eigen::Index f = 0; f < frames; ++f) {
     const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
     const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
-    pulls.col(f) = pull.u;
-    if (pull.missing.size() > 0) missing += pull.missing;
+    Kind& own = kinds[f < first ? 0 : 1];
+    all.pulls.col(f) = pull.u;
+    own.share += H;
+    if (pull.missing.size() == 0) continue;
+    all.missing += pull.missing;
+    own.missing += pull.missing;
   }
-  Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
-  if (equations.prior_information.size() > 0) {
-    prior_share = congruent(equations.prior_information, L);
-    pulls.colwise() -= pulls.rowwise().mean().eval();  // their sum is the prior's pull, no scatter
-  }
-  const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
-  const double dimensions = data_share.trace();  // that the data determine
-  const Eigen::MatrixXd scatter = pulls * pulls.transpose();
-  // mean variance over the bound's, where the scatter of views shows it
-  const double inflation = scatter.trace() / std::max(dimensions - missing.trace(), 1e-9);
-  const Eigen::MatrixXd J = scatter + inflation * missing;
+  // Their sum is the prior's pull, no scatter.
+  if (has_prior) all.pulls.colwise() -= all.pulls.rowwise().mean().eval();
   Eigen::MatrixXd shrunk;
-  if (bound_of == BoundOf::random_effects && !has_many) {
-    shrunk = std::max(1.0, inflation) * data_share;
+  if (options.bound_of == BoundOf::random_effects && !has_many) {
+    shrunk = std::max(1.0, inflation_of(all, all.pulls * all.pulls.transpose())) * all.share;
+  } else if (is_mixed) {
+    kinds[0].pulls = all.pulls.leftCols(first);
+    kinds[1].pulls = all.pulls.rightCols(frames - first);
+    shrunk = shrunk_scatter(kinds[0]) + shrunk_scatter(kinds[1]);
   } else {
-    const Eigen::MatrixXd target = inflation * data_share;
-    const double alpha =
-        std::max(ledoit_wolf_intensity(pulls, J, target),
-                 oracle_approximating_intensity(J, target, dimensions, frames - 1));
-    shrunk = student_variance(frames) * ((1 - alpha) * J + alpha * target);
+    shrunk = shrunk_scatter(all);
   }
   const Eigen::MatrixXd matrix = congruent(at_least_identity(shrunk + prior_share), L.transpose());
   return {has_many ? CovarianceKind::clustered : CovarianceKind::jackknife, names,

@@ -14,6 +14,13 @@ namespace vernier::internal {
 /// What noise a minimum variance bound is of.
 enum class BoundOf { white_noise, random_effects };
 
+struct ClusterOptions {
+  BoundOf bound_of = BoundOf::white_noise;
+  /// Clusters that come first and whose noise is of another kind than that of the rest, as frames
+  /// of a board before pairs of images; all or none of them: there is one kind.
+  Eigen::Index of_first_kind = 0;
+};
+
 /// Covariance for real images, where residuals of one frame (or image pair, or cell of one: a
 /// cluster) are correlated.
 ///
@@ -43,6 +50,9 @@ enum class BoundOf { white_noise, random_effects };
 /// the directions in which the covariance V is below C it is set to C (eigenvalues of L⁻¹ V L⁻ᵀ of
 /// at least 1).
 ///
+/// Clusters of two kinds, each with three or more, have their own J, α and tr J over the dimensions
+/// that they determine, and the sum of both is the covariance.
+///
 /// With random effects the bound already has what the coordinates of a frame share, and is nearly
 /// the truth where J, of fewer than three frames per parameter, is far from it in most directions:
 /// then α = 1 and tr J / p is taken as 1 where it is less.
@@ -52,6 +62,6 @@ enum class BoundOf { white_noise, random_effects };
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
                                      const std::vector<std::string>& names,
-                                     BoundOf bound_of = BoundOf::white_noise);
+                                     const ClusterOptions& options = {});
 
 }  // namespace vernier::internal

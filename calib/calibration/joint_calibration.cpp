@@ -315,7 +315,9 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   if (clusters == 0) {
     honest.kind = CovarianceKind::combined;  // of priors
   } else if (!options.white_noise && clusters >= 3) {
-    honest = cluster_robust_covariance(robust, minimum_variance_bound(robust, names), names);
+    const auto frames = static_cast<Eigen::Index>(board_equations(joint).frame_information.size());
+    honest = cluster_robust_covariance(robust, minimum_variance_bound(robust, names), names,
+                                       {.of_first_kind = frames});
   }
   const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
     return free * C * free.transpose();

@@ -12,6 +12,7 @@
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/solver/normal_equations.h"
+#include "calib/statistics/scatter_dof.h"
 
 namespace vernier::internal {
 namespace {
@@ -87,14 +88,6 @@ Eigen::MatrixXd at_least_identity(const Eigen::MatrixXd& M) {
   return with_eigenvalues(eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(1.0));
 }
 
-/// A covariance whose scale is the mean square of few pulls is too small by the variance of
-/// Student's t, ν / (ν − 2), for a view's pull has about four effective degrees of freedom.
-double student_variance(Eigen::Index frames) {
-  constexpr double of_a_view = 4;  // 3 fit smooth errors, 6 white noise
-  const double dof = of_a_view * static_cast<double>(frames - 1);
-  return dof / (dof - 2);
-}
-
 /// Clusters whose noise is of one kind.
 struct Kind {
   Eigen::MatrixXd pulls;    ///< one per column
@@ -118,7 +111,8 @@ Eigen::MatrixXd shrunk_scatter(const Kind& kind) {
   const double alpha =
       std::max(ledoit_wolf_intensity(kind.pulls, J, target),
                oracle_approximating_intensity(J, target, kind.share.trace(), clusters - 1));
-  return student_variance(clusters) * ((1 - alpha) * J + alpha * target);
+  return student_variance(scatter_dof(static_cast<double>(clusters))) *
+         ((1 - alpha) * J + alpha * target);
 }
 
 }  // namespace

@@ -101,24 +101,40 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
   return gaussian_prior_of(joint.estimate, "combination");
 }
 
-/// Consistency of the pairs with the previous inputs.
+double left_out_share(const JointCalibration& joint, const PairObservations& pairs) {
+  return static_cast<double>(joint.estimate.calibration->pair_outliers.size()) /
+         static_cast<double>(pairs.size());
+}
+
+/// Consistency of the pairs with the previous inputs, by the rig that the pairs themselves want:
+/// one under a wider prior, so that a wrong one does not bias it. Where the prior is so much surer
+/// than the pairs that it makes outliers of them, it is widened further, as no pair that is left
+/// out speaks against it.
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
                                     JointOptions options) {
   options.place = input.name;
-  // Compare with a solution under a ten times wider prior, so that a wrong prior does not bias the
-  // rig; with the prior itself if the pairs do not determine the rig under the wide one.
-  constexpr double wider = 10;
-  GaussianRigPrior loose = before;
-  loose.covariance.matrix *= wider * wider;
-  try {
-    const JointCalibration with = calibrate_from_pairs(pairs, loose, options);
-    return consistency_with(before, with.estimate, wider);
-  } catch (const Error&) {
-    const JointCalibration with = calibrate_from_pairs(pairs, before, options);
-    return consistency_with(before, with.estimate);
+  constexpr double most_left_out = 1.0 / 3;
+  for (const double wider : {10.0, 100.0, 1000.0}) {
+    GaussianRigPrior loose = before;
+    loose.covariance.matrix *= wider * wider;
+    try {
+      const JointCalibration with = calibrate_from_pairs(pairs, loose, options);
+      if (left_out_share(with, pairs) > most_left_out) continue;
+      return consistency_with(before, with.estimate, wider);
+    } catch (const Error&) {  // the pairs do not determine the rig under so wide a prior
+      break;
+    }
   }
+  const JointCalibration with = calibrate_from_pairs(pairs, before, options);
+  if (left_out_share(with, pairs) > most_left_out) {
+    throw Error(input.name,
+                fmt::format("{} of its {} pairs fit no rig near that of the previous inputs",
+                            with.estimate.calibration->pair_outliers.size(), pairs.size()),
+                "the rig has changed, or many matches are wrong");
+  }
+  return consistency_with(before, with.estimate);
 }
 
 PriorConsistency agreement_of_rigs(const GaussianRigPrior& before,

@@ -10,6 +10,7 @@
 #include "calib/data_and_prior.h"
 #include "calib/error.h"
 #include "calib/statistics/distributions.h"
+#include "calib/statistics/scatter_dof.h"
 
 namespace vernier::internal {
 
@@ -56,9 +57,11 @@ PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
   }
   agreement.clusters = clusters;
   if (agreement.dof > 0) {
-    agreement.p_value =
-        clusters > 1 ? fisher_survival(agreement.chi2 / agreement.dof, agreement.dof, clusters - 1)
-                     : chi_squared_survival(agreement.chi2, agreement.dof);
+    const double nu = scatter_dof(clusters);
+    agreement.p_value = clusters > 1
+                            ? fisher_survival(student_variance(nu) * agreement.chi2 / agreement.dof,
+                                              agreement.dof, nu)
+                            : chi_squared_survival(agreement.chi2, agreement.dof);
   }
   return agreement;
 }

@@ -32,8 +32,9 @@ struct PriorConsistencyOptions {
 /// (the estimate is the prior's mean moved by C_mvb times the score of the data there, whose noise
 /// has the scatter B). χ² is of δ over the eigenvectors of C_0^(-1/2) D C_0^(-1/2) with eigenvalues
 /// above 0.05, the directions the data inform. If B was estimated from `clusters` of data
-/// (0: it is known), χ² over its degrees of freedom is referred to Fisher's F with clusters − 1
-/// below, as of a variance with that many. Bar-Shalom, Li and Kirubarajan, "Estimation
+/// (0: it is known; at least 2), χ² over its degrees of freedom is referred to Fisher's F with the
+/// ν of their scatter below (calib/statistics/scatter_dof.h), after C's factor ν / (ν − 2) is taken
+/// out of it. Bar-Shalom, Li and Kirubarajan, "Estimation
 /// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the
 /// normalised innovation squared. The estimate
 /// may have been made with the prior `looseness` times as wide, so that a wrong one does not hold

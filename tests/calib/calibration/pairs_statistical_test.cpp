@@ -244,6 +244,33 @@ TEST(PairsStatistics, AKnockIsFoundAndNothingElse) {
   EXPECT_EQ(caught, 60);
 }
 
+// Against three sets that agree, of many and of few image pairs: knocks of 4 to 50 pixels, whose
+// matches a rig near the first three would all leave out.
+TEST(CombineStatistics, LargeKnocksAreFoundToo) {
+  const Rig truth = wide_rig();
+  for (const int image_pairs : {5, 30}) {
+    const SimulatedPairsOptions scene{.image_pairs = image_pairs,
+                                      .pairs_per_image = image_pairs < 10 ? 120 : 20};
+    const GaussianRigPrior datasheet = test::datasheet(truth, 63, 0, 0.5);
+    CombineInput known{"prior", RigEstimate{}, {}};
+    known.estimate->rig = datasheet.rig;
+    known.estimate->covariance = datasheet.covariance;
+    std::vector<CombineInput> inputs{known};
+    for (std::uint32_t set = 0; set < 3; ++set) {
+      inputs.push_back({"set", {}, simulate_pairs(truth, 63, set, scene)});
+    }
+    for (const double turn_rad : {0.0, 0.004, 0.008, 0.02, 0.05}) {
+      Eigen::VectorXd delta = Eigen::VectorXd::Zero(16);
+      delta[10] = turn_rad;
+      std::vector<CombineInput> all = inputs;
+      all.push_back({"after", {}, simulate_pairs(retract(truth, delta), 63, 3, scene)});
+      const CombinedInput after = combine(all, {}).inputs[4];
+      EXPECT_EQ(after.used, turn_rad == 0) << image_pairs << " " << turn_rad;
+      EXPECT_TRUE(after.agreement.dof > 0 || !after.agreement.description.empty());
+    }
+  }
+}
+
 // Frames of a board with smooth errors, whose scatter is six times the bound, and pairs with white
 // noise: each kind of cluster has its own scale. 24 sets of seeds that chose nothing; the mean's
 // standard error is 0.07. With one scale for both, single parameters are off by 1.8 in variance.

@@ -96,7 +96,7 @@ std::string input_table(const Combination& combination) {
   if (by_f) {
     text +=
         "(clusters: image pairs, or parts of them, used to estimate the covariance of the pairs; "
-        "chi² is inflated for few clusters, so p is from an F distribution with clusters - 1 "
+        "chi² is inflated for few clusters, so p is from an F distribution with 4 (clusters - 1) "
         "denominator degrees of freedom)\n";
   }
   return text;

@@ -157,6 +157,10 @@ bool uses_option(std::string_view method,
                  std::string_view option,
                  const LocaliserOptions& options = {});
 
+/// Whether a method may answer: `lines` is never sure without the stage compare, unless
+/// max_error_rate is 1.
+bool can_be_sure(std::string_view method, const LocaliserOptions& options);
+
 /// Whether a method looks at lines; true for an unknown one.
 bool uses_lines(std::string_view method);
 

@@ -209,6 +209,11 @@ void run(LocaliseArguments options, const CLI::App& verb, Session& session) {
   for (const MapNode& node : map.nodes) check_pair(node.view, options, options.map);
   check_corners(map, options);
   options.localiser.stages = localiser_stages(options.stages);
+  if (!can_be_sure(options.method, options.localiser)) {
+    throw Error("--stages " + options.stages,
+                "states no probability, so that every answer would be unsure",
+                "also give --max-error-rate 1, or add the stage compare");
+  }
   const auto localiser = make_localiser(options.method, map, options.localiser);
   const std::vector<LocalisedQuery> queries =
       options.views.world.empty() ? recorded_queries(options, map, *localiser, session)

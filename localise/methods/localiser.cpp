@@ -223,6 +223,10 @@ bool uses_option(std::string_view method,
   return std::find(used.begin(), used.end(), option) != used.end();
 }
 
+bool can_be_sure(std::string_view method, const LocaliserOptions& options) {
+  return method != "lines" || options.stages.compare || options.max_error_rate >= 1;
+}
+
 bool uses_lines(std::string_view method) { return Registry::instance().find(method).needs.lines; }
 
 bool needs_corners(std::string_view method, const LocaliserOptions& options) {

@@ -174,6 +174,20 @@ void check_designs(const Study& study) {
   }
 }
 
+/// Throws Error for a cell whose every answer would be unsure.
+void check_answers_are_possible(const StudyFile& study) {
+  for (const StudyCell& cell : study.cells) {
+    if (!cell.system.is_localiser() ||
+        can_be_sure(cell.experiment.method, cell.experiment.localiser)) {
+      continue;
+    }
+    throw Error(place_of(study, "localiser.stages"),
+                "localiser.stages = " + in_quotes(name(cell.experiment.localiser.stages)) +
+                    " states no probability, so that every answer would be unsure",
+                "set localiser.max_error_rate = 1, or add the stage compare");
+  }
+}
+
 }  // namespace
 
 std::string key_of(const SourceParameter& source) { return "sources." + std::string(source.name); }
@@ -195,6 +209,7 @@ std::vector<IdleSource> check_settings_act(const Study& study) {
   const StudyFile& file = study.file;
   check_options_are_used(file);
   check_designs(study);
+  check_answers_are_possible(file);
   std::vector<IdleSource> idle;
   for (const auto& [key, line] : file.lines) {
     if (key.find('.') == std::string::npos) continue;

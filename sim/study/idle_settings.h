@@ -27,7 +27,7 @@ struct IdleSource {
 
 /// Throws Error, with file and line, for what changes no answer of any cell: a key that is swept, a
 /// setting other than its default of anything but sources of error, and a source that
-/// one_at_a_time.sources names. Returns
+/// one_at_a_time.sources names; and for a cell that could answer nothing. Returns
 /// the sources that the study file sets, to anything but 0 and their default, and that act nowhere.
 std::vector<IdleSource> check_settings_act(const Study& study);
 

@@ -45,6 +45,8 @@ TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
        "s.toml:5: localiser.looks has no effect: localiser.method is \"pgh\""},
       {"[localiser]\nmethod = \"pgh_baseline\"\ncandidates = 7\n",
        "s.toml:5: localiser.candidates"},
+      {"[sweep]\n\"localiser.stages\" = [\"align+refine+compare\", \"none\"]\n",
+       "s.toml:4: localiser.stages = \"none\" states no probability"},
       {"[localiser]\ncommand = \"./mine\"\n", "s.toml:4: localiser.command has no effect"},
       {"[localiser]\nmin_corners = 9\n", "s.toml:4: localiser.min_corners has no effect"},
       {"[localiser]\ncorners = true\n", "s.toml:4: localiser.corners has no effect"},

@@ -308,14 +308,14 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   const PairObservations inliers = inliers_of(joint);
   const ReducedNormalEquations plain = free_equations(joint, inliers, {}, free);
   const Eigen::MatrixXd bound = minimum_variance_bound(plain, names);
-  const ReducedNormalEquations robust =
-      free_equations(joint, clustered_pairs(joint), joint.loss, free);
+  const PairObservations pairs = clustered_pairs(joint);
+  const ReducedNormalEquations robust = free_equations(joint, pairs, joint.loss, free);
   Covariance honest{CovarianceKind::mvb, names, bound};
   const std::size_t clusters = robust.frame_information.size();
   if (clusters == 0) {
     honest.kind = CovarianceKind::combined;  // of priors
   } else if (!options.white_noise && clusters >= 3) {
-    const auto frames = static_cast<Eigen::Index>(board_equations(joint).frame_information.size());
+    const auto frames = static_cast<Eigen::Index>(clusters - pairs.image_pairs.size());
     honest = cluster_robust_covariance(robust, minimum_variance_bound(robust, names), names,
                                        {.of_first_kind = frames});
   }

@@ -128,14 +128,18 @@ std::map<std::string, std::string> unlisted_settings(const ExperimentSettings& s
 /// Whether a setting has its default in all cells.
 bool is_usual(const std::string& key, const StudyFile& study) {
   if (key == "localiser.command" || key == "localiser.time_limit_s") return false;
-  auto usual = settings_of(ExperimentSettings());
-  usual.merge(unlisted_settings(ExperimentSettings()));
-  const auto known = usual.find(key);
+  const auto value = [&](const auto& listed, const ExperimentSettings& settings) {
+    const auto found = listed.find(key);
+    if (found != listed.end()) return found->second;
+    const auto unlisted = unlisted_settings(settings);
+    const auto other = unlisted.find(key);
+    return other == unlisted.end() ? std::string() : other->second;
+  };
+  const ExperimentSettings defaults;
+  const std::string usual = value(settings_of(defaults), defaults);
   return std::all_of(study.cells.begin(), study.cells.end(), [&](const StudyCell& cell) {
-    auto all = cell.settings;
-    all.merge(unlisted_settings(cell.experiment));
-    const auto set = all.find(key);
-    return set == all.end() || (known != usual.end() && set->second == known->second);
+    const std::string set = value(cell.settings, cell.experiment);
+    return set.empty() || set == usual;
   });
 }
 
@@ -165,7 +169,7 @@ void check_designs(const Study& study) {
   for (const StudyCell& cell : study.file.cells) {
     const std::string source = varied_source(cell);
     if (source.empty()) continue;
-    const std::string key = "sources." + source;
+    const std::string key = key_of(*source_parameter(source));
     const std::string reason = why_idle_in_all(key, study);
     if (reason.empty()) continue;
     throw Error(place_of(study.file, "one_at_a_time.sources"),

@@ -17,6 +17,11 @@
 namespace vernier::internal {
 namespace {
 
+/// Least fraction by which a batch reduces the variance of a parameter to say anything of its
+/// drift. Of one that it reduces by less, as the length of the baseline, the offset is of second
+/// order in those of the others (t_x with the square of t_z), which no covariance has.
+constexpr double least_told = 0.01;
+
 /// Ratio of the pairs' contribution to an estimate's variance to that of the bound, in the mean
 /// over the directions they improved, at least 1. C_0 is the bound before the pairs, P its inverse.
 double scatter_of_pairs(const RigEstimate& estimate, const Eigen::MatrixXd& P) {
@@ -36,8 +41,8 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
   const RigEstimate& all = combination.joint.estimate;
   const Eigen::MatrixXd& C_all = *all.covariance_mvb;
   const JointOptions& how = combination.options;
-  const Eigen::MatrixXd white =
-      ScaledRoot(*calibrate_jointly(before, all.rig, how).estimate.covariance_mvb).white;
+  const Eigen::MatrixXd C_before = *calibrate_jointly(before, all.rig, how).estimate.covariance_mvb;
+  const Eigen::MatrixXd white = ScaledRoot(C_before).white;
   const Eigen::MatrixXd P = white.transpose() * white;
   const double scatter = scatter_of_pairs(all, P);
   std::vector<MonitoredBatch> batches;
@@ -59,7 +64,9 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
     batch.outliers = alone.calibration->pair_outliers.size();
     batch.rms_px = alone.calibration->rms_px;
     batch.offset = difference(alone.rig, all.rig);
+    const auto told = (C_before - C).diagonal().array() > least_told * C_before.diagonal().array();
     batch.sigma = (scatter * (bound - of_before).cwiseMax(0) + of_before).cwiseSqrt();
+    batch.sigma = told.select(batch.sigma, 0);
     batch.agreement = combination.inputs[i].agreement;
     batch.is_all = used && batch.pairs == combination.evidence.pairs.size();
   }

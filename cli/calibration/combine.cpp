@@ -145,21 +145,19 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
       "batch", "pairs", "outliers", "rms px", "p", "parameter with the largest drift");
   for (const MonitoredBatch& batch : batches) {
     const auto [z, i] = worst_drift(batch);
-    if (batch.is_all) {
-      text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  combined solution\n", batch.name,
-                          batch.pairs, batch.outliers, batch.rms_px, batch.agreement.p_value);
-      continue;
-    }
-    text += fmt::format(
-        "{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  {} {:+.3g} ± {:.2g} ({:+.1f} sigma)"
-        "\n",
-        batch.name, batch.pairs, batch.outliers, batch.rms_px, batch.agreement.p_value, names[i],
-        batch.offset[static_cast<Eigen::Index>(i)], batch.sigma[static_cast<Eigen::Index>(i)], z);
+    const auto k = static_cast<Eigen::Index>(i);
+    const std::string drift = batch.is_all ? "combined solution"
+                              : z == 0     ? "none: the batch says too little of every parameter"
+                                           : fmt::format("{} {:+.3g} ± {:.2g} ({:+.1f} sigma)",
+                                                         names[i], batch.offset[k], batch.sigma[k], z);
+    text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  {}\n", batch.name, batch.pairs,
+                        batch.outliers, batch.rms_px, batch.agreement.p_value, drift);
   }
   return text;
 }
 
-/// One line per batch and parameter: batch,name,parameter,offset,sigma.
+/// One line per batch and parameter: batch,name,parameter,offset,sigma (0 where the batch says
+/// nothing of the parameter).
 std::string drift_csv(const std::vector<MonitoredBatch>& batches,
                       const std::vector<std::string>& names) {
   std::string text = "batch,name,parameter,offset,sigma\n";

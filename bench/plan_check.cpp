@@ -15,9 +15,9 @@
 // number that the plan names, and its error in depth compared with the target.
 //
 // Real: a random order of the views; the first 5, 8 and 13 are calibrated and planned from. The
-// target is the standard deviation that the first 20 of the order have by the rig, the poses, the
-// noise and its inflation of the calibration of all views; the number reached is the first of the
-// order that has it.
+// target is the standard deviation that the first 20 of the order have by the rig and the poses of
+// the calibration of all views and by the scatter between these; the number reached is the first of
+// the order that has it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -221,6 +221,12 @@ void simulated(int rigs, std::uint64_t first_seed, int views, double share_alone
       tallies.failed, std::sqrt(squares / n), std::sqrt(squares / n / (2 * n)), n);
 }
 
+double sd_by_scatter(const ViewKnowledge& known, const Rig& rig, const std::string& what) {
+  const Eigen::MatrixXd gradient = target_quantity(rig, what, range_m).gradient;
+  return std::sqrt((gradient * known.by_scatter.covariance * gradient.transpose()).trace() /
+                   static_cast<double>(gradient.rows()));
+}
+
 void real(const std::string& file) {
   const RigEstimate whole = read_rig(file).estimate;
   const CalibrationEvidence& evidence = *whole.evidence;
@@ -261,10 +267,11 @@ void real(const std::string& file) {
         for (const std::string what : {"depth", "projection"}) {
           const auto sd =
               sd_by_number(target_quantity(whole.rig, what, range_m), information, of_all.noise_px);
-          const double target = sd[static_cast<std::size_t>(goal)];
+          const double at_goal = sd[static_cast<std::size_t>(goal)];
+          const double target = at_goal * sd_by_scatter(of_all, whole.rig, what) / sd.back();
           const ViewsNeeded needed = views_needed(known, what, range_m, target);
           (what == std::string("depth") ? depth : projection)
-              .add(needed, first_within(sd, target, views));
+              .add(needed, first_within(sd, at_goal, views));
         }
       } catch (const Error& error) {
         ++failed;

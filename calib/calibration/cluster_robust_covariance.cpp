@@ -53,6 +53,9 @@ Pull corrected_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) 
   return pull;
 }
 
+/// With a prior the pulls sum to the prior's, which is no scatter.
+void remove_mean(Eigen::MatrixXd& pulls) { pulls.colwise() -= pulls.rowwise().mean().eval(); }
+
 /// Shrinkage intensity of J = Σ x_f x_fᵀ towards the target by Ledoit and Wolf.
 double ledoit_wolf_intensity(const Eigen::MatrixXd& pulls,
                              const Eigen::MatrixXd& J,
@@ -117,6 +120,18 @@ Eigen::MatrixXd shrunk_scatter(const Kind& kind) {
 
 }  // namespace
 
+Eigen::MatrixXd contributions_of_clusters(const ReducedNormalEquations& equations,
+                                          const Eigen::MatrixXd& bound) {
+  const Eigen::MatrixXd L = Cholesky(bound).lower();
+  Eigen::MatrixXd pulls(bound.rows(), equations.scores.cols());
+  for (Eigen::Index f = 0; f < pulls.cols(); ++f) {
+    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
+    pulls.col(f) = corrected_for_leverage(H, L.transpose() * equations.scores.col(f)).u;
+  }
+  if (equations.prior_information.size() > 0) remove_mean(pulls);
+  return L * pulls;
+}
+
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
                                      const std::vector<std::string>& names,
@@ -147,8 +162,7 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
     all.missing += pull.missing;
     own.missing += pull.missing;
   }
-  // Their sum is the prior's pull, no scatter.
-  if (has_prior) all.pulls.colwise() -= all.pulls.rowwise().mean().eval();
+  if (has_prior) remove_mean(all.pulls);
   Eigen::MatrixXd shrunk;
   if (options.bound_of == BoundOf::random_effects && !has_many) {
     shrunk = std::max(1.0, inflation_of(all, all.pulls * all.pulls.transpose())) * all.share;

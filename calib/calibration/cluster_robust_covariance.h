@@ -64,4 +64,10 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const std::vector<std::string>& names,
                                      const ClusterOptions& options = {});
 
+/// What each cluster contributes to the estimate, L u_f, one per column: the sum of their squares
+/// is the variance of the part of the data, by scatter alone and without shrinkage. Exact for one
+/// direction with many clusters; of rank F − 1.
+Eigen::MatrixXd contributions_of_clusters(const ReducedNormalEquations& equations,
+                                          const Eigen::MatrixXd& bound);
+
 }  // namespace vernier::internal

@@ -9,9 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/decompositions.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/board_target.h"
+#include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/estimate/rig_part.h"
@@ -125,6 +127,25 @@ Eigen::MatrixXd information_of_priors(const RigEstimate& calibration, const Eige
   return information;
 }
 
+/// Empty if the equations determine no rig.
+NoiseByScatter noise_by_scatter(ReducedNormalEquations equations,
+                                const Eigen::MatrixXd& prior,
+                                const Eigen::MatrixXd& free) {
+  if (prior.size() > 0) add_prior(equations, prior);
+  const Cholesky factor(equations.information);
+  if (!factor.is_positive_definite()) return {};
+  const Eigen::MatrixXd bound = factor.inverse();
+  const Eigen::MatrixXd moved = contributions_of_clusters(equations, bound);
+  auto dimensions = static_cast<double>(bound.rows());
+  Eigen::MatrixXd covariance = moved * moved.transpose();
+  const double squares = covariance.cwiseProduct(equations.information).sum();
+  if (prior.size() > 0) {
+    dimensions -= bound.cwiseProduct(prior).sum();
+    covariance += bound * prior * bound;
+  }
+  return {free * covariance * free.transpose(), std::sqrt(squares / dimensions)};
+}
+
 }  // namespace
 
 ViewKnowledge knowledge_of(const RigEstimate& calibration,
@@ -149,10 +170,12 @@ ViewKnowledge knowledge_of(const RigEstimate& calibration,
   known.inflation = noise.inflation;
   known.noise_px = noise.sd_px;
   known.noise_log_sd = noise.log_sd;
-  const std::vector<Eigen::MatrixXd> taken = in_directions(
-      reduced_normal_equations(evidence.observations, state, 1).frame_information, free);
+  const ReducedNormalEquations equations =
+      restricted(reduced_normal_equations(evidence.observations, state, 1), free);
+  const std::vector<Eigen::MatrixXd>& taken = equations.frame_information;
   const std::vector<FrameKind> kinds = frame_kinds(evidence.observations, evidence.frames);
   const Eigen::MatrixXd prior = information_of_priors(calibration, free);
+  known.by_scatter = noise_by_scatter(rescaled(equations, known.noise_px), prior, free);
   for (std::uint32_t pool = 0; pool < pool_count; ++pool) {
     known.pools.push_back({calibration.rig, free, taken, {}, prior});
     const std::vector<double> shares = drawn_shares(kinds, seed, pool);
@@ -175,6 +198,10 @@ int ViewKnowledge::taken_by_all() const {
 
 ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& cameras) {
   ViewKnowledge result = known;
+  if (known.by_scatter.covariance.size() > 0) {
+    const Eigen::MatrixXd part = part_by_rig(known.pools[0].rig, cameras);
+    result.by_scatter.covariance = part * known.by_scatter.covariance * part.transpose();
+  }
   for (ViewPool& pool : result.pools) {
     pool.free = part_by_rig(pool.rig, cameras) * pool.free;
     pool.rig = part_of(pool.rig, cameras);

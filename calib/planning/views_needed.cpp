@@ -16,6 +16,7 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
+#include "calib/statistics/scatter_dof.h"
 #include "calib/uncertainty/target_quantity.h"
 
 namespace vernier::internal {
@@ -28,6 +29,7 @@ constexpr int drawn_one_by_one = 100;  ///< later views are as informative as th
 /// A pool with what all of its sequences need.
 struct PreparedPool {
   const ViewPool* pool;
+  Eigen::MatrixXd wanted;    ///< gradient of the quantity: rows x parameters
   Eigen::MatrixXd gradient;  ///< rows x free
   Eigen::MatrixXd taken, mean;
 };
@@ -39,8 +41,8 @@ std::vector<PreparedPool> prepared(const ViewKnowledge& known,
   for (const ViewPool& pool : known.pools) {
     const TargetQuantity wanted = target_quantity(pool.rig, what, at_m);
     const auto p = pool.free.cols();
-    PreparedPool ready{&pool, wanted.gradient * pool.free, Eigen::MatrixXd::Zero(p, p),
-                       Eigen::MatrixXd::Zero(p, p)};
+    PreparedPool ready{&pool, wanted.gradient, wanted.gradient * pool.free,
+                       Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, p)};
     for (const Eigen::MatrixXd& S : pool.taken) ready.taken += S;
     for (const PlannedViews& kind : pool.following) {
       const double weight = kind.share / static_cast<double>(kind.views.size());
@@ -61,20 +63,49 @@ double unit_sd(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& informati
   return std::sqrt(half.squaredNorm() / static_cast<double>(gradient.rows()));
 }
 
+/// Information of the views so far and of priors, at 1 px.
+Eigen::MatrixXd information_so_far(const PreparedPool& pool, double noise_px) {
+  if (pool.pool->prior.size() == 0) return pool.taken;
+  return pool.taken + noise_px * noise_px * pool.pool->prior;
+}
+
+/// σφ for a quantity.
+struct NoiseOfTarget {
+  double sd_px, log_sd;
+};
+
+NoiseOfTarget noise_of_target(const ViewKnowledge& known, const PreparedPool& pool) {
+  constexpr double widest = 0.5;
+  NoiseOfTarget noise{known.noise_px, known.noise_log_sd};
+  const Eigen::MatrixXd& V = known.by_scatter.covariance;
+  if (V.size() == 0 || !(known.inflation > 1) || known.taken < 2) return noise;
+  const double scatter = std::sqrt((pool.wanted * V * pool.wanted.transpose()).trace() /
+                                   static_cast<double>(pool.wanted.rows()));
+  const double sd = noise.sd_px * unit_sd(pool.gradient, information_so_far(pool, noise.sd_px));
+  const double tau = widest * (1 - 1 / known.inflation);
+  const auto weight_of = [&](double dof) { return tau * tau / (tau * tau + 0.5 / dof); };
+  const double u = weight_of(scatter_dof(known.taken)), w = weight_of(known.taken - 1);
+  noise.sd_px *= std::pow(known.by_scatter.in_sigma, u * (1 - w)) * std::pow(scatter / sd, w);
+  noise.log_sd = std::hypot(noise.log_sd, tau * std::sqrt(1 - w));
+  return noise;
+}
+
 /// One sequence of views, added one by one.
 class Sequence {
  public:
-  Sequence(const PreparedPool& pool, const ViewKnowledge& known, std::uint64_t seed, int number)
+  Sequence(const PreparedPool& pool,
+           const ViewKnowledge& known,
+           const NoiseOfTarget& noise,
+           std::uint64_t seed,
+           int number)
       : pool_(pool),
         draws_({.seed = seed,
                 .trial = static_cast<std::uint32_t>(number),
                 .source = plan_source,
                 .eye = 2}),
-        noise_px_(known.noise_px * std::exp(known.noise_log_sd * draws_.normal())),
-        information_(pool.taken),
-        views_(known.taken) {
-    if (pool.pool->prior.size() > 0) information_ += noise_px_ * noise_px_ * pool.pool->prior;
-  }
+        noise_px_(noise.sd_px * std::exp(noise.log_sd * draws_.normal())),
+        information_(information_so_far(pool, noise_px_)),
+        views_(known.taken) {}
 
   int views() const { return views_; }
   double sd() const { return noise_px_ * unit_sd(pool_.gradient, information_); }
@@ -151,8 +182,10 @@ void for_sequences(const ViewKnowledge& known,
                    const ViewPlanOptions& options,
                    Work work) {
   const std::vector<PreparedPool> pools = prepared(known, what, at_m);
+  const NoiseOfTarget noise = noise_of_target(known, pools[0]);
   for (int i = 0; i < options.sequences; ++i) {
-    Sequence sequence(pools[static_cast<std::size_t>(i) % pools.size()], known, options.seed, i);
+    Sequence sequence(pools[static_cast<std::size_t>(i) % pools.size()], known, noise, options.seed,
+                      i);
     work(sequence);
   }
 }

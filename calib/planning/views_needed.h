@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +37,12 @@ struct ViewPool {
   Eigen::MatrixXd prior;  ///< information of the calibration's priors, free x free; empty: none
 };
 
+/// What the scatter between the views so far says of a calibration.
+struct NoiseByScatter {
+  Eigen::MatrixXd covariance;  ///< parameters x parameters; empty: none
+  double in_sigma = 1;         ///< root of the mean square over what σφ gives
+};
+
 /// What is known before more views are taken. The standard deviation of a quantity with gradient g
 /// after views f is
 ///
@@ -44,13 +51,27 @@ struct ViewPool {
 /// with S_f the information of a view at 1 px (calib/solver/normal_equations.h), P that of priors,
 /// σ the noise of a coordinate, and φ² the inflation of the bound by noise that is correlated
 /// within a view.
+///
+/// Such noise is not of equal power in all modes over the board that are called smooth, and does
+/// not move all quantities alike, while the F views so far have a scatter of their own. With m the
+/// root of the mean square of what it makes of the parameters over what σφ does, and r that of the
+/// standard deviation of the quantity, σφ is multiplied by m^(u (1 − w)) r^w, where
+///
+///     u = τ² / (τ² + 1 / (8 (F − 1))),   w = τ² / (τ² + 1 / (2 (F − 1))),   τ = 0.5 (1 − 1/φ²)
+///
+/// are the weights of logarithms known to 1/√(8 (F − 1)) (calib/statistics/scatter_dof.h) and
+/// 1/√(2 (F − 1)) against a prior of standard deviation τ, none for white noise. It is known to τ
+/// √(1 − w) then.
 struct ViewKnowledge {
   std::vector<ViewPool> pools;
   int taken = 0;            ///< number of views so far
   double noise_px = 0;      ///< σ φ
   double inflation = 1;     ///< φ²
   double noise_log_sd = 0;  ///< standard deviation of the logarithm of σ φ
+  NoiseByScatter by_scatter;
 
+  /// Of a coordinate: root of the mean square of the residuals.
+  double residual_px() const { return noise_px / std::sqrt(inflation); }
   /// Number of views so far that all cameras see, or all that were chosen.
   int taken_by_all() const;
 };

@@ -163,7 +163,7 @@ void allow_for_pixel_noise(const PlanArguments& o, PlanResult& plan) {
   const PlanTarget& target = plan.target;
   const Rig& rig = plan.known.pools[0].rig;
   plan.pair_sigma_px = target.quantity == "depth" ? o.pair_sigma_px : 0;
-  const double noise_px = plan.pair_sigma_px > 0 ? plan.pair_sigma_px : plan.known.noise_px;
+  const double noise_px = plan.pair_sigma_px > 0 ? plan.pair_sigma_px : plan.known.residual_px();
   plan.pixel_noise_sd = pixel_noise_sd(rig, target.at_m, noise_px);
   if (!(plan.pair_sigma_px > 0)) {
     plan.sd_allowed = target.value;

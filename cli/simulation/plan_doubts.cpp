@@ -59,7 +59,7 @@ std::string more_trials(const PlanResult& plan) {
   const double wanted = times * plan.trials;
   if (!(times > 1) || !(wanted <= most)) return "give more --trials";
   const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(wanted)) - 1));
-  return fmt::format("give more --trials, some {:.0f}", unit * std::ceil(wanted / unit));
+  return fmt::format("give more --trials, of the order of {:.0f}", unit * std::ceil(wanted / unit));
 }
 
 }  // namespace

@@ -67,13 +67,17 @@ std::string answer_text(const PlanResult& plan) {
     return fmt::format("reached: the {} so far {}\n", counted(plan.known.taken, "view"),
                        plan.known.taken == 1 ? "suffices" : "suffice");
   }
+  const int more = std::max(0, needed.views - plan.known.taken);
+  const std::string so_far =
+      plan.from_calibration ? fmt::format("{} so far", plan.known.taken) : "";
+  if (!std::isfinite(needed.interval.high)) {
+    return fmt::format("views needed: {:.0f} or more, without an upper end{}\n",
+                       needed.interval.low, so_far.empty() ? "" : " (" + so_far + ")");
+  }
   std::string text =
       fmt::format("views needed: {}, {:.0f} to {:.0f} with {:.0f} % confidence", needed.views,
                   needed.interval.low, needed.interval.high, 100 * needed.confidence);
-  if (plan.from_calibration) {
-    text += fmt::format(" ({} so far, about {} more)", plan.known.taken,
-                        std::max(0, needed.views - plan.known.taken));
-  }
+  if (plan.from_calibration) text += fmt::format(" ({}, about {} more)", so_far, more);
   text += "\n";
   if (plan.needed_by_all && plan.needed_by_all->views < needed.views) {
     text += by_all_text(*plan.needed_by_all) + "\n";
@@ -161,7 +165,7 @@ std::string plan_text(const PlanResult& plan) {
             : fmt::format(
                   "\nnot included: {:.3g} m by {:.3g} px of noise in both images of a "
                   "match (--pair-sigma-px)\n",
-                  plan.pixel_noise_sd, plan.known.noise_px);
+                  plan.pixel_noise_sd, plan.known.residual_px());
   }
   for (const LimitingCause& cause : plan.causes) {
     text += fmt::format("without {}: success {}\n", cause.name, in_percent(cause.success));

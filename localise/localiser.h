@@ -157,6 +157,9 @@ bool uses_option(std::string_view method,
                  std::string_view option,
                  const LocaliserOptions& options = {});
 
+/// Candidates that the method looks at, whatever LocaliserOptions::candidates says.
+int most_candidates(std::string_view method);
+
 /// Whether a method may answer: `lines` is never sure without the stage compare, unless
 /// max_error_rate is 1.
 bool can_be_sure(std::string_view method, const LocaliserOptions& options);

@@ -211,6 +211,20 @@ std::pair<Interval, double> fullest_interval(std::vector<double> values, double 
   return best;
 }
 
+/// Of all intervals that hold this share of the values the one with the smallest ratio of ends, and
+/// the share it holds.
+std::pair<Interval, double> narrowest_interval(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  const auto held = static_cast<std::size_t>(std::ceil(share * n));
+  Interval best{values.front(), values.back()};
+  for (std::size_t i = 0; i + held <= values.size(); ++i) {
+    const Interval next{values[i], values[i + held - 1]};
+    if (next.high * best.low < best.high * next.low) best = next;
+  }
+  return {best, static_cast<double>(held) / n};
+}
+
 }  // namespace
 
 ViewsNeeded views_needed(const ViewKnowledge& known,
@@ -230,6 +244,10 @@ ViewsNeeded views_needed(const ViewKnowledge& known,
   needed.confidence = options.confidence;
   if (needed.interval.high > options.widest * needed.interval.low) {
     std::tie(needed.interval, needed.confidence) = fullest_interval(numbers, options.widest);
+    if (needed.confidence < options.least_confidence) {
+      std::tie(needed.interval, needed.confidence) =
+          narrowest_interval(numbers, options.least_confidence);
+    }
     needed.views = std::clamp(needed.views, static_cast<int>(needed.interval.low),
                               static_cast<int>(needed.interval.high));
   }

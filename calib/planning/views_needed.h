@@ -106,8 +106,9 @@ ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& ca
 std::optional<ViewKnowledge> with_views_by_all(const ViewKnowledge& known);
 
 struct ViewPlanOptions {
-  double confidence = 0.95;  ///< of intervals
-  double widest = 2;         ///< upper over lower end of an interval of views, at most
+  double confidence = 0.95;       ///< of intervals
+  double widest = 2;              ///< upper over lower end of an interval of views, at most …
+  double least_confidence = 0.8;  ///< … where it has this confidence; else the narrowest that has
   int most_views = 2000;
   int sequences = 400;  ///< of views, shared among the pools
   std::uint64_t seed = 1;
@@ -121,7 +122,7 @@ struct ViewPlanOptions {
 struct ViewsNeeded {
   int views = 0;           ///< the median, or the end of the interval next to it
   Interval interval;       ///< `confidence` of the sequences lie within
-  double confidence = 0;   ///< that of the options, or less where the interval would be too wide
+  double confidence = 0;   ///< that of the options, or less, where the interval would be too wide
   bool is_reached = true;  ///< false: the upper end lies above most_views, the median perhaps too
 };
 

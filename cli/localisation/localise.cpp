@@ -169,7 +169,7 @@ void check_options_of_method(const LocaliseArguments& options, const CLI::App& v
        {"--command", "command"},
        {"--time-limit-s", "time_limit_s"}}};
   for (const auto& [option, name] : known) {
-    if (uses_option(options.method, name)) continue;
+    if (uses_option(options.method, name, options.localiser)) continue;
     refuse_options(verb, std::array{option}, "it has no effect on --method " + options.method,
                    "leave it out, or choose another method");
   }
@@ -203,12 +203,12 @@ void check_corners(const TopologicalMap& map, const LocaliseArguments& options) 
 }
 
 void run(LocaliseArguments options, const CLI::App& verb, Session& session) {
+  options.localiser.stages = localiser_stages(options.stages);
   check(options, verb);
   options.views.corners = options.views.corners || needs_corners(options.method, options.localiser);
   const TopologicalMap map = read_map(options.map);
   for (const MapNode& node : map.nodes) check_pair(node.view, options, options.map);
   check_corners(map, options);
-  options.localiser.stages = localiser_stages(options.stages);
   if (!can_be_sure(options.method, options.localiser)) {
     throw Error("--stages " + options.stages,
                 "states no probability, so that every answer would be unsure",

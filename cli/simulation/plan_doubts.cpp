@@ -65,7 +65,7 @@ std::string more_trials(const PlanResult& plan) {
 }  // namespace
 
 void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
-  constexpr double unsure_below = 0.8;  // confidence of an interval of a factor of two
+  constexpr double unsure = 2, unknown = 4;  // upper over lower end of the interval of views
   constexpr double correlated = 1.5;
   constexpr int few = 13;
   constexpr double shared = 1.25, mostly_shared = 1.5;  // stated over planned, with views so far
@@ -112,12 +112,17 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
         "the number of views has no upper end, for the trials leave open whether the target can be "
         "reached: " +
         more_trials(plan));
-  } else if (needed.confidence < unsure_below) {
-    session.add_trust_warning(fmt::format(
-        "the number of views is known to a factor of two with {:.0f} % confidence only: {}{}",
-        100 * needed.confidence, by_trials ? more_trials(plan) + ", or " : "",
+  } else if (const double width = needed.interval.high / needed.interval.low; width > unsure) {
+    const std::string doubt = fmt::format(
+        "the number of views is known to a factor of {:.2g} only: {}{}", width,
+        by_trials ? more_trials(plan) + ", or " : "",
         plan.from_calibration ? "take some more views and plan again"
-                              : "calibrate from five views or more and plan from these"));
+                              : "calibrate from five views or more and plan from these");
+    if (width > unknown) {
+      session.add_trust_warning(doubt);
+    } else {
+      session.warn(doubt);
+    }
   }
 }
 

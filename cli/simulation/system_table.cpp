@@ -41,7 +41,8 @@ std::string measured_table(const StudyResults& results, std::vector<TextColumn> 
     }
     rows.push_back(std::move(column));
   }
-  return "\nmeasured, medians over the answered trials:\n" + text_table(std::move(rows));
+  return "\nmeasured, medians (rms where named so) over the answered trials:\n" +
+         text_table(std::move(rows));
 }
 
 bool uses_told_rigs(const SystemKind& kind) {

@@ -30,7 +30,6 @@ namespace {
 
 using Eigen::MatrixXf;
 
-constexpr int most_nodes = 40;  ///< matching is slow
 constexpr std::size_t settled = 6;
 /// Of every pixel, beyond the noise of corners: what errors of the calibration do to them.
 constexpr double calibration_sigma_px = 0.5;
@@ -179,7 +178,7 @@ LocalisationAnswer CornerLocaliser::localise(const PlaceView& query) const {
   }
   std::vector<Candidate> candidates;
   for (const RankedNode& near :
-       index_.rank(seen.descriptors, std::min(options_.candidates, most_nodes))) {
+       index_.rank(seen.descriptors, std::min(options_.candidates, most_candidates))) {
     if (auto found = candidate(near.node, seen)) candidates.push_back(std::move(*found));
   }
   return answer(std::move(candidates), seen);

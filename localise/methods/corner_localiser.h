@@ -21,6 +21,8 @@ namespace vernier::localise::internal {
 /// docs/localisation.md.
 class CornerLocaliser : public Localiser {
  public:
+  static constexpr int most_candidates = 40;  ///< matching is slow
+
   /// Throws Error for a node whose corners are not finite, have no rig of two cameras or
   /// descriptors of another length than others.
   CornerLocaliser(const TopologicalMap& map, const LocaliserOptions& options);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -219,8 +220,18 @@ bool uses_option(std::string_view method,
                  const LocaliserOptions& options) {
   const std::vector<std::string_view> used = Registry::instance().find(method).options;
   if (used.empty()) return true;
-  if (method == "lines" && option == "histograms" && options.ranker == "view") return false;
+  if (method == "lines") {
+    if (option == "histograms" && options.ranker == "view") return false;
+    const bool is_of_posterior = option == "off_map" || option == "repeats";
+    if (is_of_posterior && !options.stages.compare) return false;
+  }
   return std::find(used.begin(), used.end(), option) != used.end();
+}
+
+int most_candidates(std::string_view method) {
+  return method == "pgh"       ? PghLocaliser::most_candidates
+         : method == "corners" ? CornerLocaliser::most_candidates
+                               : std::numeric_limits<int>::max();
 }
 
 bool can_be_sure(std::string_view method, const LocaliserOptions& options) {

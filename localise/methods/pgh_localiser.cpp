@@ -15,8 +15,7 @@ namespace vernier::localise::internal {
 
 LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   LocalisationAnswer answer;
-  constexpr int most_candidates = 12;  // alignment is slow
-  constexpr int least_lines = 6;       // of histograms, whatever the option says
+  constexpr int least_lines = 6;  // of histograms, whatever the option says
   if (static_cast<int>(query.lines.size()) < std::max(options_.min_lines, least_lines))
     return answer;
   const std::vector<RankedNode> ranked =

@@ -12,6 +12,8 @@ namespace vernier::localise::internal {
 /// Ranks nodes by histograms, verifies and refines by rigid alignment. See make_localiser.
 class PghLocaliser : public Localiser {
  public:
+  static constexpr int most_candidates = 12;  ///< alignment is slow
+
   PghLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
       : map_(map), options_(options), ranker_(map, options.histograms) {}
 

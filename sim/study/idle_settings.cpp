@@ -37,8 +37,15 @@ std::string method_is(const StudyCell& cell) {
 std::string why_localiser_idle(std::string_view name, const StudyCell& cell) {
   if (name == "method") return {};
   const std::string_view option = name == "knows_endpoint_sigma" ? "endpoint_sigma" : name;
-  const ExperimentSettings& settings = cell.experiment;
-  return uses_option(settings.method, option, settings.localiser) ? "" : method_is(cell);
+  const std::string& method = cell.experiment.method;
+  const LocaliserOptions& options = cell.experiment.localiser;
+  if (!uses_option(method, option)) return method_is(cell);
+  if (!uses_option(method, option, options)) {
+    return "localiser.stages is " + in_quotes(localise::name(options.stages));
+  }
+  const int most = most_candidates(method);
+  if (option != "candidates" || options.candidates < most) return {};
+  return fmt::format("{} looks at {} at most", method, most);
 }
 
 std::string why_histograms_idle(std::string_view name, const StudyCell& cell) {
@@ -85,6 +92,11 @@ std::string why_source_idle(const std::string& name, const StudyCell& cell) {
   }
   const SourceParameter* source = source_parameter(name);
   if (!source) return {};
+  const bool is_calibration = source->value == &SourceSettings::calibration;
+  if (is_calibration && cell.system.is_localiser() &&
+      uses_image_histograms(cell.experiment.method)) {
+    return method_is(cell);  // it has one image's lines alone
+  }
   if (std::string why = why_unseen(source->acts_on, cell); !why.empty()) return why;
   const SourceParameter* off = switched_off_with(*source, sources);
   return off ? key_of(*off) + " is 0" : "";

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
@@ -142,9 +143,12 @@ void StudyReader::check_sweep_key(const toml::table& root,
       (std::find(sections.begin(), sections.end(), head) == sections.end() ||
        key == "study.trials" || key == "study.interval_width" || key == "sources.file" ||
        key == "rig.truth" || key == "calibration.observations")) {
+    const auto meant = misspelt_word(head, {sections.begin(), sections.end()});
     fail(node, "'" + shortened(key) + "' cannot be swept",
-         "sweep a key of [sources], [corners], [camera], [map], [localiser], [calibration], "
-         "[system] or [parameters], study.protocol, study.seed, world.file or rig.file");
+         meant
+             ? "did you mean '" + *meant + shortened(key.substr(head.size())) + "'?"
+             : "sweep a key of [sources], [corners], [camera], [map], [localiser], [calibration], "
+               "[system] or [parameters], study.protocol, study.seed, world.file or rig.file");
   }
   if (key.find('.') == std::string::npos || node.is_table()) {
     fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),

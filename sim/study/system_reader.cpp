@@ -187,7 +187,11 @@ void SystemReader::check_use(const toml::table& root, const SystemKind& kind) co
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
     if (has(always, name) || kind.uses(name)) continue;
-    fail(node, fmt::format("[{}] has no effect on {}", name, kind.noun), "remove it");
+    const bool is_of_sweep = key.source().begin.line == 0 && node.is_table();
+    const std::string what =
+        is_of_sweep ? name + "." + shortened(std::string(node.as_table()->begin()->first.str()))
+                    : "[" + name + "]";
+    fail(node, what + " has no effect on " + kind.noun, "remove it");
   }
   if (!kind.uses_protocol) refuse(root, "study", "protocol", kind);
   if (!kind.tells_rigs) {

@@ -139,6 +139,10 @@ TEST(SystemReader, RefusesWhatHasNoEffect) {
   expect_complaint(calibration + "[sweep]\n\"sources.edge_loss\" = [0, 1]\n", "has no effect");
   expect_complaint(calibration + "[rig]\nfile = \"a\"\ntruth = \"b\"\n", "rig.truth has no effect");
   expect_complaint("[system]\nname = \"servoing\"\n[calibration]\n", "[calibration] has no effect");
+  expect_complaint(calibration + "[sweep]\n\"sources.edge_loss\" = [0, 0.1]\n",
+                   "sources.edge_loss has no effect on a calibration");
+  expect_complaint("[sweep]\n\"histogram.blur\" = [\"fixed\"]\n",
+                   "'histogram.blur' cannot be swept; did you mean 'histograms.blur'?");
   expect_complaint("[parameters]\na = 1\n", "[parameters] has no effect on a localiser");
   EXPECT_NE(test::error_message([] {
               parse_study("[study]\nprotocol = \"path\"\n[system]\nname = \"servoing\"\n",

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/base/shown_text.h"
@@ -81,6 +83,23 @@ std::string parameter_lines(const RigEstimate& estimate) {
   return text;
 }
 
+/// Where a covariance of this kind comes from.
+std::string_view origin(CovarianceKind kind) {
+  switch (kind) {
+    case CovarianceKind::mvb:
+      return "the bound of white noise";
+    case CovarianceKind::clustered:
+      return "by the scatter of the views";
+    case CovarianceKind::jackknife:
+      return "by the scatter of the views, few for so many parameters";
+    case CovarianceKind::prior:
+      return "as given";
+    case CovarianceKind::combined:
+      return "of all that was combined";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string direction_lines(const ScaledDecomposition& decomposition, std::size_t most) {
@@ -118,9 +137,9 @@ std::string rig_table(const RigEstimate& estimate) {
   text += parameter_lines(estimate);
   if (estimate.covariance) {
     const ScaledDecomposition decomposition(gaussian_prior_of(estimate, "rig").covariance);
-    text += fmt::format("covariance: {}; condition {:.1e}, scaled {:.1e}; directions:\n",
-                        name(estimate.covariance->kind), decomposition.raw_condition(),
-                        decomposition.scaled_condition());
+    text += fmt::format("covariance: {} ({}); condition {:.1e}, scaled {:.1e}; directions:\n",
+                        name(estimate.covariance->kind), origin(estimate.covariance->kind),
+                        decomposition.raw_condition(), decomposition.scaled_condition());
     text += direction_lines(decomposition);
   }
   return text;

@@ -17,6 +17,8 @@ namespace vernier::internal {
 /// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h).
 double normal_cdf(double z);
 double normal_survival(double z);
+/// 95 % of a normal distribution lie within so many standard deviations.
+inline constexpr double z_95 = 1.959963984540054;
 
 /// χ² with `dof` degrees of freedom.
 double chi_squared_cdf(double x, double dof);

@@ -18,6 +18,7 @@
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
 #include "calib/rig_estimate.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/shuffled.h"
 #include "calib/validation/board_lengths.h"
@@ -33,7 +34,6 @@ struct Tally {
     double z2 = 0, variance = 0;
 
     void add(double error, double stated) {
-      constexpr double z_95 = 1.959963984540054;
       const double squared = error * error / stated;
       inside += squared <= z_95 * z_95;
       z2 += squared;

@@ -23,6 +23,7 @@
 #include "calib/planning/views_needed.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/statistics/distributions.h"
 #include "calib/uncertainty/target_quantity.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
@@ -240,15 +241,14 @@ ViewsNeeded views_for_success(const PlanResult& plan,
                               const ViewKnowledge& known,
                               ViewPlanOptions how) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr double z = 1.959964;  // of the 95 % that the scale's ends hold
   const ScaleNeeded& scale = *plan.scale;
   const bool may_be_out_of_reach = !(scale.low > 0);
   if (may_be_out_of_reach) {
     how.widest = infinity;  // it has no upper end
   } else {
-    how.target_log_sd_below = std::log(scale.psi_c / scale.low) / z;
+    how.target_log_sd_below = std::log(scale.psi_c / scale.low) / z_95;
   }
-  how.target_log_sd_above = std::log(scale.high / scale.psi_c) / z;
+  how.target_log_sd_above = std::log(scale.high / scale.psi_c) / z_95;  // ends hold 95 %
   ViewsNeeded needed = views_needed(known, "depth", plan.target.at_m, *plan.sd_allowed, how);
   const bool is_beyond = needed.views >= how.most_views;
   if (may_be_out_of_reach || (!needed.is_reached && !is_beyond)) {

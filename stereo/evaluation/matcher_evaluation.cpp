@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "calib/error.h"
+#include "calib/statistics/distributions.h"
 #include "stereo/canny_edges.h"
 #include "stereo/evaluation/edge_error.h"
 #include "stereo/matcher.h"
@@ -96,7 +97,7 @@ MatcherScore evaluate(const std::vector<EdgePoint>& edges,
     if (!matched || truth[i].discontinuity || !(found[i].sigma_px > 0)) continue;
     const double z = error / found[i].sigma_px;
     ++score.stated;
-    covered += std::abs(z) <= 1.959963984540054;
+    covered += std::abs(z) <= vernier::internal::z_95;
     if (std::abs(error) > inlier_px) continue;
     ++inliers;
     z_squares += z * z;

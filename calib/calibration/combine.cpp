@@ -15,6 +15,7 @@
 #include "calib/calibration/combine_evidence.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
+#include "calib/calibration/pairs_alone.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
@@ -103,69 +104,21 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
   return gaussian_prior_of(joint.estimate, "combination");
 }
 
-double left_out_share(const JointCalibration& joint, const PairObservations& pairs) {
-  return static_cast<double>(joint.estimate.calibration->pair_outliers.size()) /
-         static_cast<double>(pairs.size());
-}
-
-/// The rig that the pairs want if the previous inputs say `wider` times less than they do.
-JointCalibration by_pairs(const PairObservations& pairs,
-                          const GaussianRigPrior& before,
-                          double wider,
-                          const JointOptions& options) {
-  GaussianRigPrior loose = before;
-  loose.covariance.matrix *= wider * wider;
-  JointEvidence evidence;
-  evidence.priors.push_back(std::move(loose));
-  evidence.pairs = pairs;
-  return calibrate_jointly(evidence, before.rig, options);
-}
-
-/// Whether one solution explains the pairs far better than another: fewer of them are left out, or
-/// with less noise.
-bool fits_better(const JointCalibration& one,
-                 const JointCalibration& other,
-                 const PairObservations& pairs) {
-  constexpr double less_noise = 0.8, fewer = 0.1;
-  return one.pair_sigma_scale < less_noise * other.pair_sigma_scale ||
-         left_out_share(one, pairs) < left_out_share(other, pairs) - fewer;
-}
-
-/// Consistency of the pairs with the previous inputs, by a solution under a ten times wider prior,
-/// so that a wrong one does not bias the rig. Where previous inputs are still so much surer than
-/// the pairs that they make outliers or noise of them, which speak against nothing, by one that
-/// they hardly hold.
+/// Consistency of the pairs with the previous inputs, by the rig that they want themselves.
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
                                     JointOptions options) {
   constexpr double most_left_out = 1.0 / 3;
   options.place = input.name;
-  const auto solved = [&](double wider) -> std::optional<JointCalibration> {
-    try {
-      return by_pairs(pairs, before, wider, options);
-    } catch (const Error&) {  // the pairs do not determine the rig under so wide a prior
-      return {};
-    }
-  };
-  double wider = 10;
-  std::optional<JointCalibration> with = solved(wider);
-  constexpr double hardly_held = 1000;
-  if (const auto free = solved(hardly_held); free && (!with || fits_better(*free, *with, pairs))) {
-    wider = hardly_held;
-    with = free;
-  }
-  if (!with) {
-    wider = 1;
-    with = by_pairs(pairs, before, wider, options);
-  }
-  if (left_out_share(*with, pairs) > most_left_out) {
+  const PairsAlone alone = pairs_alone(pairs, before, options);
+  if (alone.left_out_share() > most_left_out) {
     throw Error(input.name,
                 fmt::format("{} of its {} pairs fit no rig near that of the previous inputs",
-                            with->estimate.calibration->pair_outliers.size(), pairs.size()),
+                            alone.outliers(), pairs.size()),
                 "the rig has changed, or many matches are wrong");
   }
-  return consistency_with(before, with->estimate, wider);
+  return consistency_with(before, alone.joint.estimate, alone.wider);
 }
 
 PriorConsistency agreement_of_rigs(const GaussianRigPrior& before,

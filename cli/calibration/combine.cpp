@@ -146,10 +146,11 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
   for (const MonitoredBatch& batch : batches) {
     const auto [z, i] = worst_drift(batch);
     const auto k = static_cast<Eigen::Index>(i);
-    const std::string drift = batch.is_all ? "combined solution"
-                              : z == 0     ? "none: the batch says too little of every parameter"
-                                           : fmt::format("{} {:+.3g} ± {:.2g} ({:+.1f} sigma)",
-                                                         names[i], batch.offset[k], batch.sigma[k], z);
+    const std::string drift = batch.is_all             ? "combined solution"
+                              : !batch.failure.empty() ? batch.failure
+                              : z == 0 ? "none: the batch says too little of each parameter; see p"
+                                       : fmt::format("{} {:+.3g} ± {:.2g} ({:+.1f} sigma)",
+                                                     names[i], batch.offset[k], batch.sigma[k], z);
     text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  {}\n", batch.name, batch.pairs,
                         batch.outliers, batch.rms_px, batch.agreement.p_value, drift);
   }
@@ -184,6 +185,7 @@ Json drift_json(const std::vector<MonitoredBatch>& batches) {
                     {"outliers", batch.outliers},
                     {"rms_px", batch.rms_px},
                     {"p_value", batch.agreement.p_value},
+                    {"failure", batch.failure},
                     {"offset", list(batch.offset)},
                     {"sigma", list(batch.sigma)}});
   }

@@ -223,11 +223,6 @@ std::string why_idle(const std::string& key, const StudyCell& cell) {
 
 std::vector<IdleSource> check_settings_act(const Study& study) {
   const StudyFile& file = study.file;
-  if (!file.set_and_swept.empty()) {
-    const std::string& key = file.set_and_swept[0];
-    throw Error(place_of(file, key), key + " is swept, and has a value in its section as well",
-                "leave one of them out");
-  }
   check_options_are_used(file);
   check_designs(study);
   check_answers_are_possible(file);

@@ -280,11 +280,7 @@ void StudyReader::note_lines(const toml::table& root, StudyFile& study) const {
     }
   }
   if (const auto* sweep = section(root, "sweep")) {
-    for (const auto& [key, value] : *sweep) {
-      const std::string swept(key.str());
-      if (study.lines.contains(swept)) study.set_and_swept.push_back(swept);
-      study.lines[swept] = line(key);
-    }
+    for (const auto& [key, value] : *sweep) study.lines[std::string(key.str())] = line(key);
   }
 }
 

@@ -52,7 +52,6 @@ struct StudyFile {
   std::vector<StudyCell> cells;                        ///< all combinations
   std::string place;                                   ///< the file's name, for messages
   std::map<std::string, int> lines;  ///< of tables and dotted keys; of a swept key, its sweep's
-  std::vector<std::string> set_and_swept;  ///< keys in their section and in [sweep] too
 };
 
 /// The kind of system that a study tries, one for all cells.

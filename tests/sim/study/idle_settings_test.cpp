@@ -53,8 +53,6 @@ TEST(IdleSettings, ARequestThatIsNotHeardIsRefused) {
        "s.toml:6: localiser.candidates has no effect: pgh looks at 12 at most"},
       {"[localiser]\nmethod = \"pgh_baseline\"\n[sweep]\n\"sources.calibration\" = [0, 1]\n",
        "s.toml:6: sources.calibration has no effect: localiser.method is \"pgh_baseline\""},
-      {"[sources]\nedge_loss = 0.1\n[sweep]\n\"sources.edge_loss\" = [0, 0.1]\n",
-       "s.toml:6: sources.edge_loss is swept, and has a value in its section as well"},
       {"[localiser]\ncommand = \"./mine\"\n", "s.toml:4: localiser.command has no effect"},
       {"[localiser]\nmin_corners = 9\n", "s.toml:4: localiser.min_corners has no effect"},
       {"[localiser]\ncorners = true\n", "s.toml:4: localiser.corners has no effect"},

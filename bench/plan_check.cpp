@@ -221,12 +221,6 @@ void simulated(int rigs, std::uint64_t first_seed, int views, double share_alone
       tallies.failed, std::sqrt(squares / n), std::sqrt(squares / n / (2 * n)), n);
 }
 
-double sd_by_scatter(const ViewKnowledge& known, const Rig& rig, const std::string& what) {
-  const Eigen::MatrixXd gradient = target_quantity(rig, what, range_m).gradient;
-  return std::sqrt((gradient * known.by_scatter.covariance * gradient.transpose()).trace() /
-                   static_cast<double>(gradient.rows()));
-}
-
 void real(const std::string& file) {
   const RigEstimate whole = read_rig(file).estimate;
   const CalibrationEvidence& evidence = *whole.evidence;
@@ -265,10 +259,11 @@ void real(const std::string& file) {
             calibrate(at_frames(evidence.observations, first), {.models = models_of(whole.rig)});
         const ViewKnowledge known = knowledge_of(so_far, 1, file);
         for (const std::string what : {"depth", "projection"}) {
-          const auto sd =
-              sd_by_number(target_quantity(whole.rig, what, range_m), information, of_all.noise_px);
+          const TargetQuantity wanted = target_quantity(whole.rig, what, range_m);
+          const auto sd = sd_by_number(wanted, information, of_all.noise_px);
           const double at_goal = sd[static_cast<std::size_t>(goal)];
-          const double target = at_goal * sd_by_scatter(of_all, whole.rig, what) / sd.back();
+          const double target =
+              at_goal * sd_of(wanted, of_all.by_scatter.contributions) / sd.back();
           const ViewsNeeded needed = views_needed(known, what, range_m, target);
           (what == std::string("depth") ? depth : projection)
               .add(needed, first_within(sd, at_goal, views));

@@ -120,16 +120,20 @@ Eigen::MatrixXd shrunk_scatter(const Kind& kind) {
 
 }  // namespace
 
-Eigen::MatrixXd contributions_of_clusters(const ReducedNormalEquations& equations,
-                                          const Eigen::MatrixXd& bound) {
+ClusterScatter scatter_of_clusters(const ReducedNormalEquations& equations,
+                                   const Eigen::MatrixXd& bound) {
   const Eigen::MatrixXd L = Cholesky(bound).lower();
   Eigen::MatrixXd pulls(bound.rows(), equations.scores.cols());
+  double dimensions = 0;
   for (Eigen::Index f = 0; f < pulls.cols(); ++f) {
     const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
-    pulls.col(f) = corrected_for_leverage(H, L.transpose() * equations.scores.col(f)).u;
+    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
+    pulls.col(f) = pull.u;
+    dimensions += H.trace() - (pull.missing.size() > 0 ? pull.missing.trace() : 0);
   }
   if (equations.prior_information.size() > 0) remove_mean(pulls);
-  return L * pulls;
+  const double squares = pulls.squaredNorm();
+  return {L * pulls, dimensions > 0 && squares > 0 ? squares / dimensions : 1};
 }
 
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,

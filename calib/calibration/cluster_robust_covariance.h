@@ -64,10 +64,16 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const std::vector<std::string>& names,
                                      const ClusterOptions& options = {});
 
-/// What each cluster contributes to the estimate, L u_f, one per column: the sum of their squares
-/// is the variance of the part of the data, by scatter alone and without shrinkage. Exact for one
-/// direction with many clusters; of rank F − 1.
-Eigen::MatrixXd contributions_of_clusters(const ReducedNormalEquations& equations,
-                                          const Eigen::MatrixXd& bound);
+/// The scatter of clusters as it is, without shrinkage.
+struct ClusterScatter {
+  /// What each cluster contributes to the estimate, L u_f, one per column: the sum of their squares
+  /// is the variance of the data's part in it; 0 along a direction that one cluster alone
+  /// determines.
+  Eigen::MatrixXd contributions;
+  double inflation = 1;  ///< its mean over the bound's, where there is scatter
+};
+
+ClusterScatter scatter_of_clusters(const ReducedNormalEquations& equations,
+                                   const Eigen::MatrixXd& bound);
 
 }  // namespace vernier::internal

@@ -127,23 +127,15 @@ Eigen::MatrixXd information_of_priors(const RigEstimate& calibration, const Eige
   return information;
 }
 
-/// Empty if the equations determine no rig.
+/// `equations` at the noise σφ. Empty if they and the prior determine no rig.
 NoiseByScatter noise_by_scatter(ReducedNormalEquations equations,
                                 const Eigen::MatrixXd& prior,
                                 const Eigen::MatrixXd& free) {
   if (prior.size() > 0) add_prior(equations, prior);
   const Cholesky factor(equations.information);
   if (!factor.is_positive_definite()) return {};
-  const Eigen::MatrixXd bound = factor.inverse();
-  const Eigen::MatrixXd moved = contributions_of_clusters(equations, bound);
-  auto dimensions = static_cast<double>(bound.rows());
-  Eigen::MatrixXd covariance = moved * moved.transpose();
-  const double squares = covariance.cwiseProduct(equations.information).sum();
-  if (prior.size() > 0) {
-    dimensions -= bound.cwiseProduct(prior).sum();
-    covariance += bound * prior * bound;
-  }
-  return {free * covariance * free.transpose(), std::sqrt(squares / dimensions)};
+  const ClusterScatter scatter = scatter_of_clusters(equations, factor.inverse());
+  return {free * scatter.contributions, std::sqrt(scatter.inflation)};
 }
 
 }  // namespace
@@ -198,9 +190,9 @@ int ViewKnowledge::taken_by_all() const {
 
 ViewKnowledge for_cameras(const ViewKnowledge& known, const std::vector<int>& cameras) {
   ViewKnowledge result = known;
-  if (known.by_scatter.covariance.size() > 0) {
-    const Eigen::MatrixXd part = part_by_rig(known.pools[0].rig, cameras);
-    result.by_scatter.covariance = part * known.by_scatter.covariance * part.transpose();
+  Eigen::MatrixXd& contributions = result.by_scatter.contributions;
+  if (contributions.size() > 0) {
+    contributions = part_by_rig(known.pools[0].rig, cameras) * contributions;
   }
   for (ViewPool& pool : result.pools) {
     pool.free = part_by_rig(pool.rig, cameras) * pool.free;

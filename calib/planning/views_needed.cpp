@@ -29,7 +29,7 @@ constexpr int drawn_one_by_one = 100;  ///< later views are as informative as th
 /// A pool with what all of its sequences need.
 struct PreparedPool {
   const ViewPool* pool;
-  Eigen::MatrixXd wanted;    ///< gradient of the quantity: rows x parameters
+  TargetQuantity wanted;
   Eigen::MatrixXd gradient;  ///< rows x free
   Eigen::MatrixXd taken, mean;
 };
@@ -41,8 +41,8 @@ std::vector<PreparedPool> prepared(const ViewKnowledge& known,
   for (const ViewPool& pool : known.pools) {
     const TargetQuantity wanted = target_quantity(pool.rig, what, at_m);
     const auto p = pool.free.cols();
-    PreparedPool ready{&pool, wanted.gradient, wanted.gradient * pool.free,
-                       Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, p)};
+    PreparedPool ready{&pool, wanted, wanted.gradient * pool.free, Eigen::MatrixXd::Zero(p, p),
+                       Eigen::MatrixXd::Zero(p, p)};
     for (const Eigen::MatrixXd& S : pool.taken) ready.taken += S;
     for (const PlannedViews& kind : pool.following) {
       const double weight = kind.share / static_cast<double>(kind.views.size());
@@ -69,6 +69,25 @@ Eigen::MatrixXd information_so_far(const PreparedPool& pool, double noise_px) {
   return pool.taken + noise_px * noise_px * pool.pool->prior;
 }
 
+/// How the views so far determine a quantity, without what priors say of it.
+struct ByViews {
+  double sd = 0;     ///< at the noise that `sd_px` says
+  double views = 0;  ///< as many equal ones would
+};
+
+ByViews by_views(const PreparedPool& pool, double sd_px) {
+  const Eigen::MatrixXd a =
+      solve_symmetric(information_so_far(pool, sd_px), Eigen::MatrixXd(pool.gradient.transpose()));
+  double sum = 0, squares = 0;
+  for (const Eigen::MatrixXd& S : pool.pool->taken) {
+    const double part = a.cwiseProduct(S * a).sum();
+    sum += part;
+    squares += part * part;
+  }
+  return {sd_px * std::sqrt(sum / static_cast<double>(pool.gradient.rows())),
+          squares > 0 ? sum * sum / squares : 0};
+}
+
 /// σφ for a quantity.
 struct NoiseOfTarget {
   double sd_px, log_sd;
@@ -77,15 +96,18 @@ struct NoiseOfTarget {
 NoiseOfTarget noise_of_target(const ViewKnowledge& known, const PreparedPool& pool) {
   constexpr double widest = 0.5;
   NoiseOfTarget noise{known.noise_px, known.noise_log_sd};
-  const Eigen::MatrixXd& V = known.by_scatter.covariance;
-  if (V.size() == 0 || !(known.inflation > 1) || known.taken < 2) return noise;
-  const double scatter = std::sqrt((pool.wanted * V * pool.wanted.transpose()).trace() /
-                                   static_cast<double>(pool.wanted.rows()));
-  const double sd = noise.sd_px * unit_sd(pool.gradient, information_so_far(pool, noise.sd_px));
+  const Eigen::MatrixXd& contributions = known.by_scatter.contributions;
+  if (contributions.size() == 0 || !(known.inflation > 1)) return noise;
   const double tau = widest * (1 - 1 / known.inflation);
-  const auto weight_of = [&](double dof) { return tau * tau / (tau * tau + 0.5 / dof); };
-  const double u = weight_of(scatter_dof(known.taken)), w = weight_of(known.taken - 1);
-  noise.sd_px *= std::pow(known.by_scatter.in_sigma, u * (1 - w)) * std::pow(scatter / sd, w);
+  const auto weight_of = [&](double dof) {
+    return dof > 0 ? tau * tau / (tau * tau + 0.5 / dof) : 0;
+  };
+  const ByViews so_far = by_views(pool, noise.sd_px);
+  const double scatter = sd_of(pool.wanted, contributions), dof = so_far.views - 1;
+  const double w = scatter > 0 && so_far.sd > 0 ? weight_of(dof) : 0;
+  const double u = weight_of(scatter_dof(static_cast<double>(contributions.cols())));
+  noise.sd_px *= std::pow(known.by_scatter.in_sigma, u * (1 - w));
+  if (w > 0) noise.sd_px *= std::pow(scatter / so_far.sd * std::exp(0.5 / dof), w);
   noise.log_sd = std::hypot(noise.log_sd, tau * std::sqrt(1 - w));
   return noise;
 }

@@ -39,8 +39,9 @@ struct ViewPool {
 
 /// What the scatter between the views so far says of a calibration.
 struct NoiseByScatter {
-  Eigen::MatrixXd covariance;  ///< parameters x parameters; empty: none
-  double in_sigma = 1;         ///< root of the mean square over what σφ gives
+  Eigen::MatrixXd
+      contributions;    ///< of each view to the parameters, parameters x views; empty: none
+  double in_sigma = 1;  ///< root of their mean square over what σφ gives
 };
 
 /// What is known before more views are taken. The standard deviation of a quantity with gradient g
@@ -53,15 +54,18 @@ struct NoiseByScatter {
 /// within a view.
 ///
 /// Such noise is not of equal power in all modes over the board that are called smooth, and does
-/// not move all quantities alike, while the F views so far have a scatter of their own. With m the
-/// root of the mean square of what it makes of the parameters over what σφ does, and r that of the
-/// standard deviation of the quantity, σφ is multiplied by m^(u (1 − w)) r^w, where
+/// not move all quantities alike, while the F views so far have a scatter of their own
+/// (calib/calibration/cluster_robust_covariance.h). With m the root of the mean square of what it
+/// makes of the parameters over what σφ does, r that of the quantity alone, times e^(1 / 2ν) as the
+/// logarithm of a root of few squares is too small, and ν + 1 the number of views that determine
+/// the quantity (1 / Σ h², with h the fraction of a view in its information), σφ is multiplied by
+/// m^(u (1 − w)) r^w, where
 ///
-///     u = τ² / (τ² + 1 / (8 (F − 1))),   w = τ² / (τ² + 1 / (2 (F − 1))),   τ = 0.5 (1 − 1/φ²)
+///     u = τ² / (τ² + 1 / (8 (F − 1))),   w = τ² / (τ² + 1 / 2ν),   τ = 0.5 (1 − 1/φ²)
 ///
 /// are the weights of logarithms known to 1/√(8 (F − 1)) (calib/statistics/scatter_dof.h) and
-/// 1/√(2 (F − 1)) against a prior of standard deviation τ, none for white noise. It is known to τ
-/// √(1 − w) then.
+/// 1/√2ν against a prior of standard deviation τ, none for white noise. It is known to τ √(1 − w)
+/// then.
 struct ViewKnowledge {
   std::vector<ViewPool> pools;
   int taken = 0;            ///< number of views so far

@@ -170,6 +170,10 @@ void check_options_of_method(const LocaliseArguments& options, const CLI::App& v
        {"--time-limit-s", "time_limit_s"}}};
   for (const auto& [option, name] : known) {
     if (uses_option(options.method, name, options.localiser)) continue;
+    if (uses_option(options.method, name)) {
+      refuse_options(verb, std::array{option}, "it has no effect without the stage compare",
+                     "leave it out, or add the stage");
+    }
     refuse_options(verb, std::array{option}, "it has no effect on --method " + options.method,
                    "leave it out, or choose another method");
   }

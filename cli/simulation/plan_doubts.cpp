@@ -78,7 +78,8 @@ void warn_of_doubtful_plan(const PlanResult& plan, Session& session) {
   if (more > shared) {
     const std::string text = fmt::format(
         "by the calibration's covariance the standard deviation is now {:.3g} {}, {:.2g} times "
-        "what the noise of its views leaves: the rest may be of all views (a lens model that does "
+        "what noise and scatter of its views leave: the rest may be of all views (a lens model "
+        "that does "
         "not fit, the board), which more of them do not reduce; check the calibration",
         plan.stated_sd, plan.target.quantity == "projection" ? "px" : "m", more);
     if (more > mostly_shared) {

@@ -28,8 +28,8 @@ using namespace internal;
 namespace {
 
 void check(const LocaliserOptions& options) {
-  constexpr int most_candidates = 10'000;
-  if (options.candidates < 1 || options.candidates > most_candidates || options.min_lines < 1) {
+  constexpr int most = 10'000;
+  if (options.candidates < 1 || options.candidates > most || options.min_lines < 1) {
     throw Error("localiser options", "candidates or min_lines is out of range",
                 "use 1 to 10000 candidates and at least 1 line");
   }

@@ -217,7 +217,10 @@ std::string why_idle(const std::string& key, const StudyCell& cell) {
   if (section == "localiser") return why_localiser_idle(name, cell);
   if (section == "histograms") return why_histograms_idle(name, cell);
   if (section == "corners") return looks_at_corners(settings) ? "" : method_is(cell);
-  if (key == "map.rig" && settings.sources.calibration == 0) return "sources.calibration is 0";
+  if (key == "map.rig") {
+    return settings.sources.calibration == 0 ? "sources.calibration is 0"
+                                             : why_source_idle("calibration", cell);
+  }
   return {};
 }
 

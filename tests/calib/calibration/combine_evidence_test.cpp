@@ -297,8 +297,8 @@ TEST(CombineEvidence, ABatchLeftOutDriftsByItsOwnNoiseOnly) {
   const MonitoredBatch after = monitor(inputs, combined).at(1);
   const int baseline = 13;
   const double sd = std::sqrt(known.covariance.matrix(baseline, baseline));
-  EXPECT_LT(after.sigma[baseline], 0.2 * sd);
-  EXPECT_LT(std::abs(after.offset[baseline]), 5 * after.sigma[baseline] + 1e-3 * sd);
+  EXPECT_EQ(after.sigma[baseline], 0);
+  EXPECT_LT(std::abs(after.offset[baseline]), 0.1 * sd);
   EXPECT_NEAR(after.offset[12], 2e-3, 5 * after.sigma[12]);
 }
 

@@ -30,7 +30,7 @@ std::optional<double> epipolar_angle_rad(const Rig& rig,
                                          const ImageSegment& left);
 
 struct RectifiedGeometryOptions {
-  Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: that of the left camera
+  Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: that of the left camera, turned
   double f_px = 0;                ///< of both; 0: automatic, see below
   double max_blank = 0.01;  ///< maximum fraction of either image's pixels without a source …
   double min_zoom = 0.7;    ///< … for a focal length between min_zoom

@@ -60,7 +60,10 @@ std::string fit_line(const CalibrationSummary& s) {
                                 : fmt::format("{} board frames and image pairs", s.views);
   return fmt::format(
       "{}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom{}\n",
-      views, s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
+      views, s.rms_px,
+      s.source == "pairs"   ? " from the epipolar line"
+      : s.source == "board" ? " per coordinate"
+                            : " per coordinate of the boards",
       s.pixel_sigma_px, s.chi2, s.dof, s.effects ? " (without random effects)" : "");
 }
 

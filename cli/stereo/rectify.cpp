@@ -160,6 +160,13 @@ void check_alignment(const Rectified& rectified,
     session.add_trust_warning(words + "; check --f-px and --size");
     return;
   }
+  constexpr double much = 0.1;
+  if (blank > much && options.size.empty() && !(options.geometry.f_px > 0)) {
+    session.warn(
+        fmt::format("{:.0f} % of a rectified image is blank, at the largest focal length "
+                    "that is tried; give a larger --f-px, or another --size",
+                    100 * blank));
+  }
   if (!field.unrectified && !field.known) {
     const std::string words =
         "row alignment of the rectified images could not be checked: " + describe(field) +
@@ -331,11 +338,14 @@ void add_rectify(CLI::App& app, Session& session) {
   verb->add_option("--rig", o->rig, "rig file or shipped name")->required();
   verb->add_option("--left", o->left, "left image")->required();
   verb->add_option("--right", o->right, "right image")->required();
-  verb->add_option("--size", o->size,
-                   "size of the rectified images, WxH (default: the left camera's)");
+  verb->add_option(
+      "--size", o->size,
+      "size of the rectified images, WxH (default: the left camera's, its sides exchanged for "
+      "cameras one above the other)");
   verb->add_option(
           "--f-px", o->geometry.f_px,
-          "focal length of the rectified images (default: widest view with almost no blank pixels)")
+          "focal length of the rectified images (default: widest view with almost no blank pixels, "
+          "at most 1.3 times the cameras')")
       ->check(finite_and_positive);
   verb->add_option("--at-m", o->at_m,
                    "depth at which the rig's error is reported (default: where the disparity is "

@@ -87,8 +87,9 @@ void add_projection(const Input& in, int camera, PointFixedTo fixed_to, Uncertai
     summarise(report);
     if (report.grid.absent > 0 && distance_m == distances.front()) {
       const std::string note = fmt::format(
-          "{} of {} grid pixels of the {} camera cannot be unprojected: the distortion model folds "
-          "over there",
+          "{} of {} grid pixels of the {} camera cannot be unprojected: the lens model has no ray "
+          "there "
+          "(its distortion folds over, or the ray is 89.5 degrees from the axis or beyond)",
           report.grid.absent, report.grid.covariance.size(), lens.name);
       note_once(note, out.notes);
     }

@@ -48,6 +48,13 @@ Eigen::Vector2d rectified_middle(const Camera& camera, const Eigen::Matrix3d& R_
   return ray.head<2>() / ray.z();
 }
 
+/// The size of a camera's images, its sides exchanged if rectification turns them by about a
+/// quarter, as those of cameras one above the other.
+Eigen::Vector2i turned_size_px(const Camera& camera, const Eigen::Matrix3d& R_rectified_camera) {
+  const bool is_upright = std::abs(R_rectified_camera(0, 0)) >= std::abs(R_rectified_camera(0, 1));
+  return is_upright ? camera.size_px : camera.size_px.reverse();
+}
+
 /// At this focal length; `middle` is where the mean of both cameras' image centres goes.
 RectifiedGeometry at_focal_length(const Rig& rig,
                                   RectifiedGeometry geometry,
@@ -88,11 +95,13 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
   geometry.turn = rectification(rig);
   geometry.baseline_m = rig.T_camera_first[1].t.norm();
   const bool sized = options.size_px[0] > 0;
-  geometry.size_px = sized ? options.size_px : rig.cameras[0].size_px;
+  const auto size_px = [&](int camera) -> Eigen::Vector2i {
+    return sized ? options.size_px : turned_size_px(rig.cameras[camera], turn_of(geometry, camera));
+  };
+  geometry.size_px = size_px(0);
   std::array<Eigen::Vector2d, 2> middles_px;
   for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2i size = sized ? options.size_px : rig.cameras[i].size_px;
-    middles_px[i] = 0.5 * (size - Eigen::Vector2i::Ones()).cast<double>();
+    middles_px[i] = 0.5 * (size_px(i) - Eigen::Vector2i::Ones()).cast<double>();
   }
   const auto at = [&](double f_px) { return at_focal_length(rig, geometry, middles_px, f_px); };
   if (options.f_px > 0) return at(options.f_px);

@@ -161,6 +161,21 @@ TEST(RectifiedImages, CamerasSideBySideStayAsTheyAre) {
 }
 
 /// Beyond the fold of its distortion (x_d falls as x grows) a ray lands where another one belongs.
+TEST(RectifiedImages, CamerasOneAboveTheOtherGetUprightImages) {
+  Rig rig = test::stereo_rig();
+  const double baseline_m = rig.T_camera_first[1].t.norm();
+  for (const double sign : {1., -1.}) {
+    rig.T_camera_first[1].t = {0, sign * baseline_m, 0};
+    const RectifiedGeometry g = rectified_geometry(rig);
+    EXPECT_EQ(g.size_px, Eigen::Vector2i(rig.cameras[0].size_px.reverse()));
+    const auto corner = raw_pixel(rig, g, 0, {5, 5});
+    ASSERT_TRUE(corner);  // full to its corners
+    EXPECT_GT(corner->minCoeff(), -0.5);
+    const Eigen::Vector2i size_px(400, 300);
+    EXPECT_EQ(rectified_geometry(rig, {.size_px = size_px}).size_px, size_px);
+  }
+}
+
 TEST(RectifiedImages, PixelsBeyondTheFoldHaveNoSource) {
   Rig rig = test::stereo_rig(Radial1{});
   for (Camera& camera : rig.cameras) camera.parameters[4] = -0.6;  // folds at r = 0.745

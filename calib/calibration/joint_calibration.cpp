@@ -203,7 +203,8 @@ void warn(const JointCalibration& joint,
   }
   if (joint.observability && joint.observability->is_prior_dominated()) {
     summary.warnings.push_back(fmt::format(
-        "the result is dominated by what is known beside the pairs: they determine {:.1f} of {} parameters",
+        "the result is dominated by what is known beside the pairs: they determine {:.1f} of {} "
+        "parameters",
         std::max(0.0, joint.observability->from_data), joint.observability->directions.size()));
   }
 }

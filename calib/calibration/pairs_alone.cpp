@@ -7,6 +7,7 @@
 
 #include "calib/error.h"
 #include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {

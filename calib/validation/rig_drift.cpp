@@ -11,6 +11,7 @@
 #include "calib/combine.h"
 #include "calib/error.h"
 #include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"

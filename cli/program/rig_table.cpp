@@ -52,18 +52,21 @@ std::optional<Eigen::Vector2d> estimated_warp_m(const RigEstimate& estimate) {
 }
 
 /// How well the data are fitted; nothing of priors alone.
-std::string fit_line(const CalibrationSummary& s) {
+std::string fit_line(const RigEstimate& estimate) {
+  const CalibrationSummary& s = *estimate.calibration;
   if (s.views == 0 && s.dof == 0) return "no corners and no pairs, priors alone\n";
-  const std::string views = s.source == "board" ? counted(s.views, "view")
-                            : s.source == "pairs"
-                                ? counted(s.views, "image pair")
-                                : fmt::format("{} board frames and image pairs", s.views);
+  const auto& evidence = estimate.evidence;
+  const bool has_pairs = evidence ? evidence->pairs.size() > 0 : s.source != "board";
+  const bool has_boards = evidence ? !evidence->observations.views.empty() : s.source != "pairs";
+  const std::string views = has_boards && has_pairs
+                                ? fmt::format("{} board frames and image pairs", s.views)
+                                : counted(s.views, has_boards ? "view" : "image pair");
   return fmt::format(
       "{}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom{}\n",
       views, s.rms_px,
-      s.source == "pairs"   ? " from the epipolar line"
-      : s.source == "board" ? " per coordinate"
-                            : " per coordinate of the boards",
+      !has_boards ? " from the epipolar line"
+      : has_pairs ? " per coordinate of the boards"
+                  : " per coordinate",
       s.pixel_sigma_px, s.chi2, s.dof, s.effects ? " (without random effects)" : "");
 }
 
@@ -119,7 +122,7 @@ std::string rig_table(const RigEstimate& estimate) {
   std::string text;
   if (estimate.calibration) {
     const CalibrationSummary& s = *estimate.calibration;
-    text += fit_line(s);
+    text += fit_line(estimate);
     if (s.prior_dof > 0) {
       text +=
           fmt::format("prior: chi² {:.2f} for {} parameters with prior (p at most {:.2g})\n",

@@ -66,7 +66,8 @@ TEST(ClusterRobustCovariance, HoldsWhereOneFrameAloneDeterminesAParameter) {
   }
   const Eigen::MatrixXd bound = equations.information.inverse();
   const std::vector<std::string> names{"a", "b", "c", "d"};
-  Eigen::VectorXd ratio = Eigen::VectorXd::Zero(parameters);
+  Eigen::VectorXd ratio = Eigen::VectorXd::Zero(parameters), scatter = ratio;
+  double inflation = 0;
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
     RandomStream noise({.seed = 6, .trial = draw, .source = 200});
     std::vector<Eigen::VectorXd> e;
@@ -80,9 +81,18 @@ TEST(ClusterRobustCovariance, HoldsWhereOneFrameAloneDeterminesAParameter) {
     for (int f = 0; f < frames; ++f) equations.scores.col(f) = A[f].transpose() * (e[f] - A[f] * x);
     const Eigen::MatrixXd C = cluster_robust_covariance(equations, bound, names).matrix;
     ratio += C.diagonal().cwiseQuotient(bound.diagonal()) / draws;
+    const ClusterScatter raw = scatter_of_clusters(equations, bound);
+    const Eigen::VectorXd squares = raw.contributions.rowwise().squaredNorm();
+    scatter += squares.cwiseQuotient(bound.diagonal()) / draws;
+    inflation += raw.inflation / draws;
   }
   // 1.018 by Student's variance, and what the bound as the least adds to the mean
   for (int p = 0; p < parameters; ++p) EXPECT_NEAR(ratio[p], 1.08, 0.05) << p;
+  // Without shrinkage unbiased, and nothing of what one frame alone determines. Each is known to
+  // √(2 / (29 · 2000)) = 0.6 %.
+  for (int p = 0; p + 1 < parameters; ++p) EXPECT_NEAR(scatter[p], 1, 0.03) << p;
+  EXPECT_LT(scatter[3], 0.1);
+  EXPECT_NEAR(inflation, 1, 0.03);
 }
 
 /// Mean normalised error squared over its degrees of freedom, by the bound and by the covariance.

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration/pairs_alone.h"
 
+#include <cstddef>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {
@@ -25,11 +30,17 @@ bool fits_better(const PairsAlone& one, const PairsAlone& other) {
 
 GaussianRigPrior loosened(const GaussianRigPrior& known, double wider, Loosened what) {
   GaussianRigPrior loose = known;
-  Eigen::MatrixXd& C = loose.covariance.matrix;
-  const auto moved = what == Loosened::all
-                         ? C.rows()
-                         : static_cast<Eigen::Index>(6 * (known.rig.cameras.size() - 1));
-  C.bottomRightCorner(moved, moved) *= wider * wider;
+  if (what == Loosened::all) {
+    loose.covariance.matrix *= wider * wider;
+    return loose;
+  }
+  const std::vector<std::string> all = parameter_names(known.rig);
+  const std::set<std::string> poses(all.begin() + pose_index(known.rig, 1), all.end());
+  std::vector<Eigen::Index> moved;
+  for (std::size_t i = 0; i < known.covariance.names.size(); ++i) {
+    if (poses.contains(known.covariance.names[i])) moved.push_back(static_cast<Eigen::Index>(i));
+  }
+  loose.covariance.matrix(moved, moved) *= wider * wider;
   return loose;
 }
 

@@ -80,7 +80,7 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
   const RigEstimate& all = combination.joint.estimate;
   const RigEstimate before = calibrate_jointly(evidence, all.rig, combination.options).estimate;
   const GaussianRigPrior known = gaussian_prior_of(before, "previous inputs");
-  const Eigen::MatrixXd& C_0 = known.covariance.matrix;
+  const Eigen::MatrixXd C_0 = full_covariance(known).matrix;
   const Solution of_all = solution_of(all, pseudo_inverse(*before.covariance_mvb));
   std::vector<MonitoredBatch> batches;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -97,7 +97,7 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
       const PairsAlone alone = pairs_alone(pairs, known, combination.options, Loosened::poses);
       const RigEstimate& own = alone.joint.estimate;
       const Eigen::MatrixXd C_wide =
-          loosened(known, alone.wider, Loosened::poses).covariance.matrix;
+          full_covariance(loosened(known, alone.wider, Loosened::poses)).matrix;
       const Solution of_batch = solution_of(own, pseudo_inverse(C_wide));
       batch.outliers = alone.outliers();
       batch.rms_px = own.calibration->rms_px;

@@ -150,7 +150,7 @@ class RealPairs(Case):
                             if isinstance(gate, dict) and 'ok' in gate))
         combined = self.works('combine', self.folder / 'rig.json', '-o', self.folder / 'prior.json')
         self.assertIn('its corners are combined without', combined.stderr)
-        self.assertIn('13 board frames and image pairs', combined.stdout)
+        self.assertIn('13 views, rms', combined.stdout)
         self.assertNotIn('board warp', combined.stdout)
         advised = self.works('advise', self.folder / 'rig.json', '--reduce', 'depth', '--at-m', '5')
         self.assertIn("without the board's shape and motion", advised.stderr)

@@ -302,5 +302,30 @@ TEST(CombineEvidence, ABatchLeftOutDriftsByItsOwnNoiseOnly) {
   EXPECT_NEAR(after.offset[12], 2e-3, 5 * after.sigma[12]);
 }
 
+TEST(Combine, DriftIsOfTheParametersThatAreNotHeld) {
+  const Rig truth = test::stereo_rig();
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(16);
+  turn[12] = 5e-3;
+  GaussianRigPrior known = test::datasheet(truth, 43, 0, 0.3);
+  constexpr int held[] = {1, 6, 13};  // aspect ratios, and the length of the baseline
+  Eigen::VectorXd delta = difference(known.rig, truth);
+  for (const int i : held) {
+    delta[i] = 0;
+    known.covariance.matrix.row(i).setZero();
+    known.covariance.matrix.col(i).setZero();
+  }
+  RigEstimate prior;
+  prior.rig = retract(truth, delta);
+  prior.covariance = known.covariance;
+  const std::vector<CombineInput> inputs{{"datasheet", prior, {}},
+                                         {"one", {}, simulate_pairs(truth, 43)},
+                                         {"two", {}, simulate_pairs(truth, 44)},
+                                         {"turned", {}, simulate_pairs(retract(truth, turn), 45)}};
+  const MonitoredBatch turned = monitor(inputs, combine(inputs)).at(2);
+  for (const int i : held) EXPECT_EQ(turned.sigma[i], 0) << i;
+  EXPECT_NEAR(turned.offset[12], 5e-3, 5 * turned.sigma[12]);
+  EXPECT_LT(turned.sigma[12], 1e-3);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -27,7 +27,8 @@ Interval wilson_interval(double successes, double trials, double confidence) {
   const double shrink = 1 + z * z / trials;
   const double centre = (p + z * z / (2 * trials)) / shrink;
   const double half = z * std::sqrt(p * (1 - p) / trials + z * z / (4 * trials * trials)) / shrink;
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  // p lies within, also where rounding says otherwise
+  return {std::clamp(centre - half, 0.0, p), std::clamp(centre + half, p, 1.0)};
 }
 
 Interval clopper_pearson_interval(int successes, int trials, double confidence) {

@@ -223,7 +223,7 @@ void run(LocaliseArguments options, const CLI::App& verb, Session& session) {
       options.views.world.empty() ? recorded_queries(options, map, *localiser, session)
                                   : simulated_queries(options, map, *localiser, session);
   if (!options.output.empty()) write_atomically(options.output, queries_csv(queries));
-  check_answers(queries, session);
+  check_answers(queries, options.localiser.off_map, session);
   Json json{{"map", options.map}, {"method", options.method}};
   json.update(queries_json(queries));
   json["doubts"] = session.trust_warnings();

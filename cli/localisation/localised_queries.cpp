@@ -210,7 +210,7 @@ void check_stated_errors(const std::vector<LocalisedQuery>& queries, Session& se
 
 }  // namespace
 
-void check_answers(const std::vector<LocalisedQuery>& queries, Session& session) {
+void check_answers(const std::vector<LocalisedQuery>& queries, double off_map, Session& session) {
   check_stated_errors(queries, session);
   std::size_t answered = 0, failed = 0;
   std::string why;
@@ -223,9 +223,12 @@ void check_answers(const std::vector<LocalisedQuery>& queries, Session& session)
     session.add_trust_warning(fmt::format("the localiser failed in {} of {} queries; first: {}",
                                           failed, queries.size(), why));
   } else if (answered == 0) {
-    session.add_trust_warning(
+    const std::string none =
         queries.size() == 1 ? fmt::format("no answer: {}", status_words(queries[0].answer.status))
-                            : fmt::format("none of {} queries was answered", queries.size()));
+                            : fmt::format("none of {} queries was answered", queries.size());
+    session.add_trust_warning(
+        none +
+        (off_map > 0 ? "; --off-map makes views of few lines unsure: try a smaller one" : ""));
   }
 }
 

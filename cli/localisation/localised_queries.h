@@ -33,6 +33,6 @@ std::string queries_table(const std::vector<LocalisedQuery>& queries);
 std::string queries_csv(const std::vector<LocalisedQuery>& queries);
 
 /// Records why the answers are not to be trusted, if there is a reason.
-void check_answers(const std::vector<LocalisedQuery>& queries, Session& session);
+void check_answers(const std::vector<LocalisedQuery>& queries, double off_map, Session& session);
 
 }  // namespace vernier::cli

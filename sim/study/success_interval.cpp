@@ -69,7 +69,8 @@ std::optional<Interval> clustered_interval_95(std::span<const ClusterCount> maps
   const double shrink = 1 + t * t / m;
   const double centre = (p + t * t / (2 * m)) / shrink;
   const double half = t * std::sqrt(p * (1 - p) / m + t * t / (4 * m * m)) / shrink;
-  return Interval{std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  // p lies within, also where rounding says otherwise
+  return Interval{std::clamp(centre - half, 0.0, p), std::clamp(centre + half, p, 1.0)};
 }
 
 std::optional<Interval> interval_over_worlds_95(std::span<const ClusterCount> worlds) {

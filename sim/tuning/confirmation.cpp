@@ -39,7 +39,13 @@ struct TrialScores {
   int conditions = 0;
 };
 
-PairedScores paired(const StudyResults& a, const StudyResults& b, Objective objective) {
+/// Rounds are maps.
+struct ScoresOfMaps {
+  PairedScores all;
+  std::map<std::string, PairedScores> by_world;
+};
+
+ScoresOfMaps paired(const StudyResults& a, const StudyResults& b, Objective objective) {
   const auto same = [](const CellResult& x, const CellResult& y) {
     return x.trials.size() == y.trials.size() && x.trials_per_block == y.trials_per_block;
   };
@@ -58,16 +64,37 @@ PairedScores paired(const StudyResults& a, const StudyResults& b, Objective obje
       ++trial.conditions;
     }
   }
-  PairedScores all;
+  ScoresOfMaps scores;
   for (const auto& [map, trials] : maps) {
     std::vector<double> of_a, of_b;
     for (const auto& [number, trial] : trials) {
       of_a.push_back(trial.a / trial.conditions);
       of_b.push_back(trial.b / trial.conditions);
     }
-    all.add_round(of_a, of_b);
+    scores.all.add_round(of_a, of_b);
+    scores.by_world[map.first].add_round(of_a, of_b);
   }
-  return all;
+  return scores;
+}
+
+/// A standard deviation with the degrees of freedom that it is known with.
+struct Deviation {
+  double sd, dof;
+};
+
+/// Of the mean difference in further maps of these worlds: the worlds are strata, whose variances
+/// add up, with the degrees of freedom of Welch and Satterthwaite. With a single map of a world
+/// that between all maps.
+Deviation deviation_in_these_worlds(const ScoresOfMaps& scores) {
+  double variance = 0, squares = 0;
+  for (const auto& [world, maps] : scores.by_world) {
+    if (maps.rounds() < 2) return {scores.all.sd(), scores.all.rounds() - 1.0};
+    const double share = maps.trials() / scores.all.trials();
+    const double of_world = share * share * maps.sd() * maps.sd();
+    variance += of_world;
+    squares += of_world * of_world / (maps.rounds() - 1);
+  }
+  return {std::sqrt(variance), variance * variance / squares};
 }
 
 }  // namespace
@@ -112,11 +139,11 @@ CandidateFigures figures_of(const StudyResults& results,
 ConfirmedDifference confirmed_difference(const StudyResults& a,
                                          const StudyResults& b,
                                          Objective objective) {
-  const PairedScores all = paired(a, b, objective);
+  const ScoresOfMaps scores = paired(a, b, objective);
   ConfirmedDifference result;
-  result.difference = all.difference();
-  if (all.rounds() < fewest_maps) return result;
-  const double dof = all.rounds() - 1, sd = all.sd();
+  result.difference = scores.all.difference();
+  if (scores.all.rounds() < fewest_maps) return result;
+  const auto [sd, dof] = deviation_in_these_worlds(scores);
   const double t = student_quantile(0.975, dof);
   result.interval_95 = {result.difference - t * sd, result.difference + t * sd};
   result.p_value = 2 * student_survival(std::abs(result.difference) / sd, dof);

@@ -34,8 +34,9 @@ CandidateFigures figures_of(const StudyResults& results,
 /// queries too, pairs are less alike and the interval is wider.
 struct ConfirmedDifference {
   double difference = 0;
-  /// Student's over recorded maps, which all conditions of a world share, with the variance V of
-  /// paired_scores.h, as the p-value of no difference; none for fewer than six maps.
+  /// Student's for further maps of these worlds, as the p-value of no difference: over recorded
+  /// maps, which all conditions of a world share, with the variance V of paired_scores.h in each
+  /// world; none for fewer than six maps.
   std::optional<Interval> interval_95;
   std::optional<double> p_value;
 };

@@ -34,6 +34,7 @@ class PairedScores {
   void add_round(std::span<const double> a, std::span<const double> b);
 
   int rounds() const { return static_cast<int>(rounds_.size()); }
+  double trials() const { return trials_; }
   /// Mean difference; 0 without trials.
   double difference() const { return trials_ > 0 ? sum_ / trials_ : 0; }
   /// √V / Σ n_k: its standard deviation. 0 without trials.

@@ -5,13 +5,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "calib/error.h"
+#include "sim/experiment.h"
 #include "sim/study/study.h"
 #include "sim/tuning/confirmation.h"
 #include "sim/tuning/objective.h"
@@ -149,6 +152,33 @@ TEST_F(RaceSearches, ACopyOfAConditionNarrowsNothing) {
   const CandidateFigures six = figures_of(a, {0, 1, 2, 3, 4, 5}, Objective::success);
   EXPECT_EQ(six.maps, figures.maps);
   EXPECT_EQ(six.trials, 6 * figures.trials);
+}
+
+/// Twelve maps of 25 trials in a world, the first `wrong` of each wrong.
+CellResult world_result(const std::string& world, int wrong) {
+  CellResult result;
+  result.cell.world = world;
+  result.trials_per_block = 25;
+  for (std::uint32_t t = 0; t < 300; ++t) {
+    TrialResult& trial = result.trials.emplace_back();
+    trial.trial = t;
+    trial.error = static_cast<int>(t % 25) < wrong ? 5 : 0;
+    trial.status = localise::LocalisationStatus::answered;
+  }
+  return result;
+}
+
+TEST(Confirmation, WhatWorldsDifferByIsNoScatterOfMaps) {
+  // Better by 5 of 25 in every map of one world, worse by 5 in every map of the other.
+  StudyResults a, b;
+  a.cells = {world_result("one", 0), world_result("two", 5)};
+  b.cells = {world_result("one", 5), world_result("two", 0)};
+  const ConfirmedDifference both = confirmed_difference(a, b, Objective::success);
+  EXPECT_EQ(both.difference, 0);
+  ASSERT_TRUE(both.interval_95);
+  // The variance of independent trials is left: √(2 · 62) / 600 times Student's 2.07 with 22
+  // degrees of freedom; over all 24 maps the half width was 0.086.
+  EXPECT_NEAR(both.interval_95->high, std::sqrt(2 * 62.) / 600 * 2.074, 1e-4);
 }
 
 }  // namespace

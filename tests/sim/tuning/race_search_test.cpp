@@ -160,7 +160,7 @@ CellResult world_result(const std::string& world, int wrong) {
   result.cell.world = world;
   result.trials_per_block = 25;
   for (std::uint32_t t = 0; t < 300; ++t) {
-    TrialResult& trial = result.trials.emplace_back();
+    sim::TrialResult& trial = result.trials.emplace_back();
     trial.trial = t;
     trial.error = static_cast<int>(t % 25) < wrong ? 5 : 0;
     trial.status = localise::LocalisationStatus::answered;

@@ -39,8 +39,8 @@ struct ViewPool {
 
 /// What the scatter between the views so far says of a calibration.
 struct NoiseByScatter {
-  Eigen::MatrixXd
-      contributions;    ///< of each view to the parameters, parameters x views; empty: none
+  /// Of each view to the parameters, parameters x views; empty: none.
+  Eigen::MatrixXd contributions;
   double in_sigma = 1;  ///< root of their mean square over what σφ gives
 };
 

@@ -50,8 +50,8 @@ Solution solution_of(const RigEstimate& estimate, const Eigen::MatrixXd& before)
   return solution;
 }
 
-/// Of B g for the scores g of pairs, whose information is H.
-Eigen::VectorXd variance_of_scores(const Eigen::MatrixXd& B, const Eigen::MatrixXd& H) {
+/// Of B x for an x of covariance H, as the scores of pairs whose information that is.
+Eigen::VectorXd variances(const Eigen::MatrixXd& B, const Eigen::MatrixXd& H) {
   return (B * H * B.transpose()).diagonal().cwiseMax(0);
 }
 
@@ -64,11 +64,9 @@ Eigen::VectorXd variance_of_offset(const Solution& all,
   const Eigen::MatrixXd A = batch.bound * batch.before - all.bound * all.before;
   const Eigen::MatrixXd H_batch = pseudo_inverse(batch.bound) - batch.before;
   const Eigen::MatrixXd H_rest = pseudo_inverse(all.bound) - all.before - u * H_batch;
-  const Eigen::VectorXd of_before = (A * C_0 * A.transpose()).diagonal();
-  return of_before +
-         (is_used ? all : batch).scatter *
-             variance_of_scores(batch.bound - u * all.bound, H_batch) +
-         all.scatter * variance_of_scores(all.bound, H_rest);
+  return variances(A, C_0) +
+         (is_used ? all : batch).scatter * variances(batch.bound - u * all.bound, H_batch) +
+         all.scatter * variances(all.bound, H_rest);
 }
 
 }  // namespace

@@ -98,6 +98,24 @@ struct Kind {
   Eigen::MatrixXd share;    ///< of the information, Σ H_f
 };
 
+/// Of the clusters from `begin` to before `end`; the bound is L Lᵀ.
+Kind kind_of(const ReducedNormalEquations& equations,
+             const Eigen::MatrixXd& L,
+             Eigen::Index begin,
+             Eigen::Index end) {
+  const auto p = L.rows();
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(p, p);
+  Kind kind{Eigen::MatrixXd(p, end - begin), none, none};
+  for (Eigen::Index f = begin; f < end; ++f) {
+    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
+    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
+    kind.pulls.col(f - begin) = pull.u;
+    kind.share += H;
+    if (pull.missing.size() > 0) kind.missing += pull.missing;
+  }
+  return kind;
+}
+
 /// Mean variance over the bound's, where the scatter shows it.
 double inflation_of(const Kind& kind, const Eigen::MatrixXd& scatter) {
   const double seen = kind.share.trace() - kind.missing.trace();
@@ -123,17 +141,11 @@ Eigen::MatrixXd shrunk_scatter(const Kind& kind) {
 ClusterScatter scatter_of_clusters(const ReducedNormalEquations& equations,
                                    const Eigen::MatrixXd& bound) {
   const Eigen::MatrixXd L = Cholesky(bound).lower();
-  Eigen::MatrixXd pulls(bound.rows(), equations.scores.cols());
-  double dimensions = 0;
-  for (Eigen::Index f = 0; f < pulls.cols(); ++f) {
-    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
-    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
-    pulls.col(f) = pull.u;
-    dimensions += H.trace() - (pull.missing.size() > 0 ? pull.missing.trace() : 0);
-  }
-  if (equations.prior_information.size() > 0) remove_mean(pulls);
-  const double squares = pulls.squaredNorm();
-  return {L * pulls, dimensions > 0 && squares > 0 ? squares / dimensions : 1};
+  Kind all = kind_of(equations, L, 0, equations.scores.cols());
+  if (equations.prior_information.size() > 0) remove_mean(all.pulls);
+  const double squares = all.pulls.squaredNorm();
+  const double dimensions = all.share.trace() - all.missing.trace();
+  return {L * all.pulls, dimensions > 0 && squares > 0 ? squares / dimensions : 1};
 }
 
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
@@ -153,27 +165,17 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
   if (has_prior) prior_share = congruent(equations.prior_information, L);
   const Eigen::Index first = options.of_first_kind;
   const bool is_mixed = first >= least && frames - first >= least;
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(p, p);
-  Kind all{Eigen::MatrixXd(p, frames), none, Eigen::MatrixXd::Identity(p, p) - prior_share};
-  Kind kinds[] = {{{}, none, none}, {{}, none, none}};
-  for (Eigen::Index f = 0; f < frames; ++f) {
-    const Eigen::MatrixXd H = congruent(equations.frame_information[f], L);
-    const Pull pull = corrected_for_leverage(H, L.transpose() * equations.scores.col(f));
-    Kind& own = kinds[f < first ? 0 : 1];
-    all.pulls.col(f) = pull.u;
-    own.share += H;
-    if (pull.missing.size() == 0) continue;
-    all.missing += pull.missing;
-    own.missing += pull.missing;
-  }
+  Kind all = kind_of(equations, L, 0, frames);
+  all.share = Eigen::MatrixXd::Identity(p, p) - prior_share;
   if (has_prior) remove_mean(all.pulls);
   Eigen::MatrixXd shrunk;
   if (options.bound_of == BoundOf::random_effects && !has_many) {
     shrunk = std::max(1.0, inflation_of(all, all.pulls * all.pulls.transpose())) * all.share;
   } else if (is_mixed) {
-    kinds[0].pulls = all.pulls.leftCols(first);
-    kinds[1].pulls = all.pulls.rightCols(frames - first);
-    shrunk = shrunk_scatter(kinds[0]) + shrunk_scatter(kinds[1]);
+    Kind one = kind_of(equations, L, 0, first), other = kind_of(equations, L, first, frames);
+    one.pulls = all.pulls.leftCols(first);
+    other.pulls = all.pulls.rightCols(frames - first);
+    shrunk = shrunk_scatter(one) + shrunk_scatter(other);
   } else {
     shrunk = shrunk_scatter(all);
   }

@@ -44,7 +44,7 @@ struct ComparableProblem {
   BoardState start;  ///< with the board warp of our minimum
 };
 
-ComparableProblem comparable_problem(const CheckedProblem& p, const Session& session) {
+ComparableProblem comparable_problem(const CheckedProblem& p, Session& session) {
   ComparableProblem like;
   like.start = p.start;
   like.start.warp_m = p.state.warp_m;
@@ -140,7 +140,7 @@ CheckSection part_of(const MrcalAnswers& answers, double vernier_ms, double reso
 
 }  // namespace
 
-CheckSection check_by_mrcal(const CheckedProblem& p, const Session& session) {
+CheckSection check_by_mrcal(const CheckedProblem& p, Session& session) {
   CheckSection part;
   if (!mrcal_available()) {
     part.reason = "this build has no libmrcal (install Debian's libmrcal-dev and rebuild)";

@@ -23,7 +23,7 @@ struct CheckedProblem {
 
 /// Solves the same problem with mrcal and compares parameters, covariance, and projection and
 /// triangulation uncertainty with ours, with tolerances; also reports both solve times.
-CheckSection check_by_mrcal(const CheckedProblem& problem, const Session& session);
+CheckSection check_by_mrcal(const CheckedProblem& problem, Session& session);
 
 /// Monte Carlo check: solves the calibration with simulated noise and compares the errors with the
 /// covariance.

@@ -144,7 +144,7 @@ void write_all(const NamedContents& files, const std::filesystem::path& output) 
 }
 
 /// Warns of cameras whose size is probably another's. `told` is the size that was given, or empty.
-void warn_of_far_centres(const Rig& rig, const std::string& told, const Session& session) {
+void warn_of_far_centres(const Rig& rig, const std::string& told, Session& session) {
   constexpr double far_off = 0.2;  // of a side, from the middle; lenses differ by a few percent
   for (const Camera& camera : rig.cameras) {
     const Eigen::Array2d size = camera.size_px.cast<double>();
@@ -163,7 +163,7 @@ void report_notes(const ReadRig& read,
                   RigFormat from,
                   const std::vector<std::string>& losses,
                   const std::string& told_size,
-                  const Session& session) {
+                  Session& session) {
   for (const std::string& note : read.notes) session.info(note);
   warn_of_millimetres(from, read.estimate.rig, "add --unit-m 0.001", session);
   for (const std::string& line : losses) session.info(line);

@@ -83,7 +83,7 @@ bool is_same_view(const PlaceView& a, const PlaceView& b) {
 /// Says how many queries are views that the map was made of.
 void tell_own_views(const std::vector<RecordedLooks>& queries,
                     const TopologicalMap& map,
-                    const Session& session) {
+                    Session& session) {
   const auto own = std::count_if(queries.begin(), queries.end(), [&](const RecordedLooks& query) {
     return std::any_of(map.nodes.begin(), map.nodes.end(), [&](const MapNode& node) {
       return is_same_view(query.looks[0].view, node.view);

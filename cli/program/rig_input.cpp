@@ -238,7 +238,7 @@ std::vector<fs::path> files_read(RigFormat format, std::vector<fs::path> inputs)
 void warn_of_millimetres(RigFormat format,
                          const Rig& rig,
                          const std::string& remedy,
-                         const Session& session) {
+                         Session& session) {
   constexpr double far_m = 10;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const double distance_m = rig.T_camera_first[i].t.norm();

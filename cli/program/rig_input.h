@@ -62,7 +62,7 @@ ReadRig read_stereo_rig(const std::string& name,
 void warn_of_millimetres(RigFormat format,
                          const Rig& rig,
                          const std::string& remedy,
-                         const Session& session);
+                         Session& session);
 
 /// The files that read_named_rig() reads, which no output may overwrite.
 std::vector<std::filesystem::path> files_of_named_rig(const std::string& name);

@@ -30,7 +30,21 @@ void Session::info(const std::string& line) const {
   if (!quiet) say(printable(line, most_line_bytes) + "\n");
 }
 
+void Session::warn(const std::string& line) {
+  info("warning: " + line);
+  warnings_.push_back(line);
+}
+
 namespace {
+
+/// Adds the warnings that are not there yet.
+void add_warnings(const std::vector<std::string>& warnings, Json& object) {
+  if (warnings.empty()) return;
+  Json& all = object["warnings"];
+  for (const std::string& warning : warnings) {
+    if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+  }
+}
 
 /// Text whose control characters do nothing to a terminal: names come from files.
 std::string printable_lines(const std::string& text) {
@@ -57,6 +71,7 @@ void Session::result(const Json& object, const std::string& text) {
   tell_trust_warnings();
   if (json) {
     Json out = object;
+    add_warnings(warnings_, out);
     if (!trust_warnings_.empty()) out["doubts"] = trust_warnings_;
     // a file name may contain invalid UTF-8
     print_result(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -38,15 +38,16 @@ class Session {
 
   /// Prints a line to standard error, unless quiet.
   void info(const std::string& line) const;
-  /// Prints a warning to standard error, unless quiet.
-  void warn(const std::string& line) const { info("warning: " + line); }
+  /// Prints a warning to standard error, unless quiet, and keeps it for the JSON object.
+  void warn(const std::string& line);
   /// Records a reason why the result is not trustworthy: exit code 3. It is printed to standard
   /// error with the result, so that a call that fails prints nothing but its error.
   void add_trust_warning(const std::string& reason);
   /// Prints the reasons that are not yet printed.
   void tell_trust_warnings();
-  /// Prints the result to standard output: the JSON object with --json, otherwise the text. Throws
-  /// Error if it cannot be written.
+  /// Prints the result to standard output: the JSON object with --json, otherwise the text. The
+  /// object gets the key `warnings` if there were any (beside those it holds under that key), and
+  /// `doubts` with the reasons of exit code 3. Throws Error if it cannot be written.
   void result(const Json& object, const std::string& text);
 
   Exit exit_code() const { return trust_warnings_.empty() ? Exit::done : Exit::untrusted; }
@@ -56,8 +57,9 @@ class Session {
   std::function<void()> action;
 
  private:
+  std::vector<std::string> warnings_;
   std::vector<std::string> trust_warnings_;
-  std::size_t told_ = 0;  ///< of them
+  std::size_t told_ = 0;  ///< of trust_warnings_
 };
 
 /// Progress of a long job on standard error: a bar with the remaining time on a terminal, plain

@@ -206,7 +206,7 @@ std::vector<NamedRig> read_rigs(const std::vector<std::string>& names, Session& 
   return rigs;
 }
 
-void add_rig(const NamedRig& rig, const Session& session, Validation proof, Json& data) {
+void add_rig(const NamedRig& rig, Session& session, Validation proof, Json& data) {
   data["rigs"].push_back(report_rig(rig.estimate, rig.file, proof, session));
   const Json& calibration = data["rigs"].back()["calibration"];
   if (!calibration.is_object()) return;

@@ -268,7 +268,7 @@ Study load_inputs_without_rig(const StudyFile& study, const fs::path& beside, Se
   return assemble_beside(study, beside, session, WithRig::no);
 }
 
-void check_new_study(const Study& study, const fs::path& folder, const Session& session) {
+void check_new_study(const Study& study, const fs::path& folder, Session& session) {
   std::error_code unknown;
   if (fs::exists(folder / study_copy, unknown)) return;
   std::map<std::string, std::vector<std::string>> idle;  // sources by reason

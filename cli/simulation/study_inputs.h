@@ -40,9 +40,7 @@ Study load_study(const std::string& text, const std::filesystem::path& place, Se
 
 /// Throws Error for settings without effect, and says which sources have none, unless the folder
 /// already holds a study: what was begun can be gone on with.
-void check_new_study(const Study& study,
-                     const std::filesystem::path& folder,
-                     const Session& session);
+void check_new_study(const Study& study, const std::filesystem::path& folder, Session& session);
 
 /// A study with its inputs (of the folder `beside`) but for its true rig, for a caller that gives
 /// it one.

@@ -37,7 +37,7 @@ struct SampleArguments {
 UnphysicalDraws write_samples(const SampleArguments& options,
                               const RigFile& rig,
                               const RigSampler& sampler,
-                              const Session& session) {
+                              Session& session) {
   UnphysicalDraws unphysical_draws;
   FileInProgress csv(options.output);
   std::string row;

@@ -76,12 +76,37 @@ class Odometry(verb_calls.ProgramCase):
                 if line[0] != '#']
         self.assertEqual([float(row[0]) for row in rows], [0, 0.1, 0.2])
         self.assertAlmostEqual(float(rows[2][1]), 2 * STEP_M, delta=0.005)
+        self.assertGreater(found['end_sd_m']['corners'], 0)
+        self.assertNotIn('warnings', found)
         (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0 1\n')
         self.refused(*call, '--truth', 'true.txt', says='has 1 poses for 3 images')
         (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0\n')
         self.refused(*call, '--truth', 'true.txt', says='true.txt:1: has 7 fields')
         self.refused(*call, '--truth', 'true.txt', '-o', 'true.txt', says='true.txt')
         self.assertIn('0 0 0', (self.folder / 'true.txt').read_text())
+
+    def test_what_is_stated_of_the_end_beside_steps_that_err_more_or_are_not_found(self):
+        (self.folder / 'wall.json').write_text(json.dumps(rig()))
+        grey = wall()
+        for i in range(6):
+            for side, x in (('l', i * STEP_M), ('r', i * STEP_M + BASELINE_M)):
+                write_pgm(self.folder / f'e{side}{i}.pgm', image(grey, x))
+        call = ['odometry', '--left', 'el*.pgm', '--right', 'er*.pgm', '--rig', 'wall.json', '--json', '-q']
+        (self.folder / 'off.txt').write_text(
+            ''.join(f'{i} {i * STEP_M + 0.02 * (i % 2)} 0 1 0 0 0 1\n' for i in range(6)))
+        found = json.loads(self.done(*call, '--truth', 'off.txt'))
+        self.assertEqual(found['truth']['nees_inside_95'], 0)
+        self.assertIn('100 % of the steps lie outside', found['warnings'][0])
+        for side, at in (('l', 170), ('r', 150)):
+            write_pgm(self.folder / f'e{side}3.pgm', [
+                [200 if abs(v - 120) < 9 and abs(u - at) < 9 else 100 for u in range(SIZE[0])]
+                for v in range(SIZE[1])])
+        run = self.run_program(*call)
+        self.assertEqual(run.returncode, 3, run.stderr)
+        found = json.loads(run.stdout)
+        self.assertEqual((found['found'], found['steps']), (3, 5))
+        self.assertIsNone(found['end_sd_m']['corners'])
+        self.assertIn('2 of 5 steps were not found', found['doubts'][0])
 
     def test_half_of_the_image_that_moves_otherwise_is_told(self):
         (self.folder / 'wall.json').write_text(json.dumps(rig()))

@@ -5,6 +5,8 @@
 
     streams_test.py PROGRAM [unittest's options]
 """
+import dataclasses
+import json
 import os
 import pathlib
 import re
@@ -91,6 +93,26 @@ class Streams(unittest.TestCase):
                         self.assertIn('vernier: standard output: cannot be written',
                                       done.stderr.splitlines()[-1])
                     self.expect_same_files(call, folder)
+
+    def test_warnings_and_doubts_are_in_the_object_of_a_quiet_call_too(self):
+        warned = 0
+        for call in verb_calls.calls():
+            if '--json' in call.words:
+                continue
+            with self.subTest(verb=call.name):
+                folder, done = self.run_in_folder(
+                    dataclasses.replace(call, words=[*call.words, '--json', '--quiet']), '')
+                self.assertEqual(done.returncode, call.code, done.stderr)
+                found = json.loads(done.stdout)
+                lines = self.reference[call.name][0].stderr.splitlines()
+                for begin, key in (('warning: ', 'warnings'), ('vernier: not trustworthy: ', 'doubts')):
+                    for line in lines:
+                        if line.startswith(begin):
+                            self.assertIn(line[len(begin):], found[key])
+                            warned += 1
+                self.assertNotIn('warning: ', done.stderr)
+                self.expect_same_files(call, folder)
+        self.assertGreater(warned, 5)
 
     def test_help_and_complaints_too(self):
         for words, redirection, code in ((['--help'], '>&-', 2), (['--version'], '>/dev/full', 2),

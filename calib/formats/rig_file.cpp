@@ -140,6 +140,23 @@ Covariance parse_covariance(const Node& node,
   return {source, parameter_names(rig), parse_parameter_matrix(node, rig, listed)};
 }
 
+/// Throws Error for a parameter that the calibration at `calibration` held, and that is listed with
+/// a variance in the matrix at `covariance`.
+void check_held(const std::vector<std::string>& held,
+                const Node& calibration,
+                const std::vector<std::string>& listed,
+                const Node& covariance) {
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const auto found = std::find(listed.begin(), listed.end(), held[i]);
+    if (found == listed.end()) continue;
+    const auto row = found - listed.begin();
+    if (covariance.at("matrix").matrix()(row, row) == 0) continue;
+    throw Error(calibration.at("held").at(i).place(),
+                in_quotes(held[i]) + " has a variance in the covariance",
+                "take it out of one of them");
+  }
+}
+
 /// JSON has no NaN: it would be written as null, which a rig file may contain only for the residual
 /// of an outlier whose frame was excluded too.
 void require_finite(const Json& json, const std::string& place) {
@@ -204,6 +221,10 @@ RigFile rig_of(const Json& json, const std::string& place) {
     estimate.calibration = rig_json::parse_summary(root.at("calibration"), estimate.rig);
     for (const std::string& warning : estimate.calibration->trust_warnings) {
       file.warnings.push_back(stored_warning_prefix(place) + warning);
+    }
+    if (covariance) {
+      check_held(estimate.calibration->held, root.at("calibration"), file.listed,
+                 root.at("covariance"));
     }
   }
   if (root.has("evidence")) {

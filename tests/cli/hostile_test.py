@@ -53,6 +53,10 @@ class Hostile(cli_test.Case):
         rig = self.calibrated()
         rig['calibration']['held'] = rig['parameter_names']
         self.write('held.json', rig)
+        self.refused('combine', 'held.json', '-o', 'q.json', says='"left.f_px" has a variance in the covariance')
+        for key in 'covariance', 'covariance_mvb':
+            rig[key]['matrix'] = [[0 for _ in row] for row in rig[key]['matrix']]
+        self.write('held.json', rig)
         self.refused('combine', 'held.json', '-o', 'q.json', says='every parameter is fixed')
 
     def test_an_interrupted_study_without_the_index_of_its_log(self):

@@ -206,6 +206,16 @@ TEST(RigFile, WhatIsHeldIsOneOfTheRigsParameters) {
             "parameter_names");
 }
 
+TEST(RigFile, AParameterWithAVarianceIsNotHeld) {
+  const std::string text =
+      test::replaced(format_rig(estimate(), KeepEvidence::no), "\"calibration\":{",
+                     R"("calibration":{"held":["left.ax"],)");
+  EXPECT_EQ(
+      complaint_of(text),
+      "rig.json: calibration.held[0]: \"left.ax\" has a variance in the covariance; take it out "
+      "of one of them");
+}
+
 // The corners of estimate(): 40 views of 54 in 20 frames.
 TEST(RigFile, ASummaryThatNoCalibrationHasIsRefused) {
   using Change = void (*)(CalibrationSummary&);

@@ -28,9 +28,9 @@
 #include "cli/report/report_data.h"
 #include "cli/report/report_evaluation.h"
 #include "cli/report/study_figures.h"
+#include "cli/simulation/study_doubts.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
-#include "cli/simulation/study_run.h"
 #include "sim/study/study.h"
 #include "sim/study/system_kind.h"
 #include "sim/world.h"
@@ -81,16 +81,18 @@ struct LoadedStudy {
   std::string folder;
   Study study;
   StudyResults results;
+  StudyDoubts doubts;
 };
 
 LoadedStudy load(const std::string& folder, Session& session) {
-  LoadedStudy loaded{folder, open_folder(folder, session), {}};
+  LoadedStudy loaded{folder, open_folder(folder, session), {}, {}};
   loaded.results = study_results(loaded.study, folder, listed_of_a_cell(loaded.study));
   const StudyResults& results = loaded.results;
   if (results.blocks_done == 0) {
     throw Error(folder, "contains no finished block", "run the study first");
   }
-  tell_changed_programs(results, session);
+  loaded.doubts = doubts_of(loaded.study, results);
+  tell_stored(loaded.doubts, session);
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
                                           results.blocks_done, results.blocks_total));
@@ -140,6 +142,8 @@ void add_worlds(const Study& study, Json& part) {
 /// What the page says of one study.
 Json study_part(const LoadedStudy& loaded, const std::string& name) {
   Json part{{"name", name}, {"study", report_study(loaded.study, loaded.results)}};
+  part["study"]["doubts"] = loaded.doubts.doubts;
+  part["study"]["warnings"] = loaded.doubts.warnings;
   if (!loaded.study.file.cells[0].system.is_localiser()) return part;
   part["world"] = report_world(loaded.study.world);
   part["view"] = report_view(loaded.study);

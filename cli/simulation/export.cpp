@@ -18,9 +18,9 @@
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/simulation/export_tables.h"
+#include "cli/simulation/study_doubts.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
-#include "cli/simulation/study_run.h"
 #include "sim/study/study.h"
 
 namespace vernier::cli {
@@ -51,7 +51,7 @@ void run(const ExportArguments& options, Session& session) {
   } else {
     rows = export_cells(study, results, options.settings, options.output, file);
   }
-  tell_changed_programs(results, session);
+  tell_stored(doubts_of(study, results), session);
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
                                           results.blocks_done, results.blocks_total));

@@ -17,6 +17,7 @@
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/route_remarks.h"
 #include "cli/simulation/shard_choice.h"
+#include "cli/simulation/study_doubts.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_merge.h"
@@ -46,12 +47,7 @@ struct StudyArguments {
 
 void print(const Study& study, const fs::path& folder, Session& session) {
   const StudyResults results = study_results(study, folder, 0);
-  tell_failed_trials(results, session);
-  tell_shared_views(study, session);
-  tell_failed_calibrations(results, session);
-  tell_unseen_worlds(results, session);
-  tell_understated_errors(results, session);
-  tell_changed_programs(results, session);
+  tell(doubts_of(study, results), session);
   session.result(study_json(study, results), study_table(study, results));
 }
 

@@ -11,9 +11,9 @@
 #include "calib/error.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
+#include "cli/simulation/study_doubts.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
-#include "cli/simulation/study_run.h"
 #include "cli/simulation/study_table.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/store_rows.h"
@@ -126,10 +126,7 @@ void merge_studies(const std::vector<fs::path>& parts,
         "queries of the world ceiling are missing from the merged study; run " +
         shard_options(missing) + " and merge again");
   }
-  tell_failed_trials(results, session);
-  tell_failed_calibrations(results, session);
-  tell_unseen_worlds(results, session);
-  tell_understated_errors(results, session);
+  tell(doubts_of(study, results), session);
   session.result(study_json(study, results), study_table(study, results));
 }
 

@@ -20,6 +20,7 @@
 #include "cli/program/machine.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
+#include "cli/simulation/study_doubts.h"
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_run.h"
 #include "cli/simulation/tune_result.h"
@@ -151,9 +152,7 @@ StudyResults confirm(const Tuning& tuning,
   run_in_folder(claim, study, std::move(job),
                 fmt::format("tune: confirmation of candidate {}", candidate + 1), session);
   StudyResults results = study_results(study, folder);
-  tell_failed_trials(results, session);
-  tell_failed_calibrations(results, session);
-  tell_unseen_worlds(results, session);
+  tell(doubts_of(study, results), session);
   return results;
 }
 

@@ -6,7 +6,7 @@
 /** Pages of such studies: name to [JSON text, whether it has plots]. */
 export function system_samples(study) {
   const page = (of, plotly) => [JSON.stringify({ title: "Systems", ...of }), plotly];
-  const program = system_study(study, PROGRAM);
+  const program = { ...system_study(study, PROGRAM), doubts: ["<it> failed in 3 of 31 trials"] };
   const [first] = program.cells;
   const alone = { ...program, cells: [{ ...first, label: "as set", success_interval_95: null,
     success_interval_95_missing: "needs 6 blocks, has 1", measured: {}, median_error: null,
@@ -87,6 +87,8 @@ function faults_of_words({ study, headline, words, making, overview }) {
     !limit.test(spaced(headline)) && `the headline does not say when a ${name} succeeds`,
     !headline.includes("CPU time per trial") && "no tile of the CPU time per trial",
     !making.toLowerCase().includes("system") && "the system is not said under How to reproduce",
+    ...(study.doubts ?? []).filter((doubt) => !headline.includes(doubt))
+      .map((doubt) => `the doubt "${doubt}" is not shown`),
     overview && !/System.*Success means/s.test(overview) && "systems are not told apart",
   ];
 }

@@ -163,6 +163,14 @@ class Systems(unittest.TestCase):
         done = self.run_study(text, code=3)
         self.assertIn('a program failed in 1 of 30 trials', done.stderr)
         self.assertIn('first by:', done.stderr)
+        for words in (('report', 'results', '--no-proof', '-o', 'report.html'),
+                      ('export', 'results', '-o', 'table.csv', '--json')):
+            shown = self.call(*words)
+            self.assertEqual(shown.returncode, 0, shown.stderr)
+            self.assertIn('warning: a program failed in 1 of 30 trials', shown.stderr)
+        self.assertIn('failed in 1 of 30 trials', json.loads(shown.stdout)['warnings'][0])
+        page = (self.folder / 'report.html').read_text()
+        self.assertRegex(page, r'"doubts": ?\["a program failed in 1 of 30 trials')
 
     def test_a_matchers_program_that_fails_ends_the_study(self):
         if not self.has_embree():

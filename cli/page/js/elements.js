@@ -25,6 +25,13 @@ export function nodes_of(child) {
   });
 }
 
+/** A box of warnings or doubts; null where there are none. */
+export function findings(heading, list) {
+  if (!list?.length) return null;
+  return element("div", { class: "warning", role: "note" }, element("strong", {}, heading),
+    element("ul", {}, list.map((words) => element("li", {}, words))));
+}
+
 export const paragraph = (...children) => element("p", {}, ...children);
 
 // Of several studies each has its sections, with ids of their own and without entries in the contents.

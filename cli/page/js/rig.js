@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { corners_content } from "./corners.js";
 import { correlation_part } from "./correlations.js";
-import { element, paragraph, section, section_named, table } from "./elements.js";
+import { element, findings, paragraph, section, section_named, table } from "./elements.js";
 import { DASH, count, counted, percent, significant } from "./format.js";
 import { is_number, ratio } from "./numbers.js";
 import { directions_list, is_bound, parameter_table } from "./parameters.js";
@@ -66,12 +66,6 @@ function rig_content(rig) {
     element("div", { class: "pair table-first" }, parameter_table(rig), directions_list(rig)),
     correlation_part(rig),
   ].filter(Boolean);
-}
-
-function findings(heading, list) {
-  if (!list?.length) return null;
-  return element("div", { class: "warning", role: "note" }, element("strong", {}, heading),
-    element("ul", {}, list.map((words) => element("li", {}, words))));
 }
 
 /** Summary of the calibration settings and data. */

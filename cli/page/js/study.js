@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-import { element, paragraph, part_id, section, small, table } from "./elements.js";
+import { element, findings, paragraph, part_id, section, small, table } from "./elements.js";
 import {
   DASH, count, counted, fixed, metres, milliseconds, p_value, percent, range_percent,
   significant,
@@ -48,6 +48,7 @@ export function headline(report) {
   const study = report.study;
   const cell = headline_cell(study);
   headline_box({
+    study,
     heading: study.cells.length > 1 ? `Localisation success at ${at_words(cell)}`
       : "Localisation success",
     share: cell.success,
@@ -58,12 +59,14 @@ export function headline(report) {
 }
 
 /** The first section of a study: its success, in figures and in words, and tiles. */
-export function headline_box({ heading, share, of, words, tiles }) {
+export function headline_box({ study, heading, share, of, words, tiles }) {
   const id = part_id("headline");
   const box = element("section", { id, class: "headline", "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` }, heading),
     element("div", {}, element("div", { class: "figure" }, percent(share)), paragraph(of)),
-    element("div", { class: "words" }, words),
+    element("div", { class: "words" }, words,
+      findings("Reasons not to trust these results", study.doubts),
+      findings("Warnings", study.warnings)),
     element("dl", { class: "tiles" }, tiles));
   document.getElementById("report").append(box);
 }

@@ -16,6 +16,7 @@ const upper_first = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 export function system_headline({ study }) {
   const cell = headline_cell(study);
   headline_box({
+    study,
     heading: study.cells.length > 1 ? `Success at ${at_words(cell)}` : "Success",
     share: cell.success,
     of: `of trials whose ${study.system.title} is ${limit_words(study, cell)}`,

@@ -1058,11 +1058,12 @@ class CheckedFile(Case):
         found, _ = self.check(3)
         self.assertAlmostEqual(found['file']['max_covariance_diff'], 1, places=9)
 
-    def test_a_hold_in_name_only_is_found(self):
+    def test_a_hold_in_name_only_is_refused(self):
         rig = self.calibrate()
         rig['calibration']['held'] = ['left.ax']
         (self.folder / 'rig.json').write_text(json.dumps(rig))
-        self.assertIsNone(self.check(3)[0]['file']['max_covariance_diff'])  # infinite
+        self.complains('check', self.folder / 'rig.json',
+                       of='calibration.held[0]: "left.ax" has a variance in the covariance')
 
     def test_holds_go_with_the_names_of_cameras(self):
         self.calibrate('--hold', 'left.ax=1')

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "calib/error.h"
@@ -105,7 +106,8 @@ void check_unknown(const Scene& scene, Session& session) {
 void check_range(Scene& scene, Session& session) {
   constexpr double some = 0.02, much = 0.2;
   const DisparityRange& range = scene.file.range;
-  float least = 0, most = 0;
+  constexpr float none = std::numeric_limits<float>::infinity();
+  float least = none, most = -none;
   int known = 0, outside = 0;
   for (const TruthAtEdge& at : scene.truth) {
     if (!at.known) continue;

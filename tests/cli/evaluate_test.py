@@ -212,7 +212,7 @@ class Evaluate(unittest.TestCase):
         write_pgm(self.folder / 'other.pgm', right)
         write_pgm(self.folder / 'twice.pgm', [[2 * d for d in row] for row in pair()[2]])
         self.doubts(of='check that the ground truth belongs to this left image', truth='twice')
-        self.doubts(of='outside the search range', most=4)
+        self.doubts(of='outside the search range of 0 to 4 px; they range from 6 to', most=4)
         self.doubts(of='are not aligned', right='other')
 
     def test_rows_of_another_height_are_doubted(self):

@@ -29,7 +29,7 @@ Json pose_deg_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, heading_deg
 /// Of queries whose truth is known.
 struct Success {
   int queries = 0, answered = 0, right = 0, guesses_right = 0;
-  std::vector<double> errors_m, cpu_ms;
+  std::vector<double> errors_m, turns_deg, cpu_ms;
 };
 
 Success success_of(const std::vector<LocalisedQuery>& queries) {
@@ -44,6 +44,7 @@ Success success_of(const std::vector<LocalisedQuery>& queries) {
     ++s.answered;
     s.right += near;
     s.errors_m.push_back(query.error_m());
+    s.turns_deg.push_back(std::abs(query.heading_error_deg()));
   }
   return s;
 }
@@ -75,6 +76,7 @@ Json query_json(const LocalisedQuery& query) {
   if (query.truth) {
     json["truth"] = pose_deg_json(*query.truth);
     json["error_m"] = json_number(query.error_m());
+    json["heading_error_deg"] = json_number(query.heading_error_deg());
   }
   if (!std::isnan(query.cpu_ms)) json["cpu_ms"] = query.cpu_ms;
   return json;
@@ -91,12 +93,16 @@ std::string success_text(const Success& s) {
   if (s.queries == 0) return "";
   const Interval interval = wilson_interval(s.right, s.queries);
   std::string text = fmt::format(
-      "within 1 m: {} of {}, {:.1f} % [{:.1f}, {:.1f}]; answered: {}, right of these: {}; "
+      "within 1 m, whatever the heading: {} of {}, {:.1f} % [{:.1f}, {:.1f}]; answered: {}, right "
+      "of these: {}; "
       "best guesses right: {}\n",
       s.right, s.queries, 100.0 * s.right / s.queries, 100 * interval.low, 100 * interval.high,
       s.answered, s.right, s.guesses_right);
   if (!s.errors_m.empty()) {
-    text += fmt::format("median error of answers: {:.3f} m\n", median(s.errors_m));
+    const double most_deg = *std::max_element(s.turns_deg.begin(), s.turns_deg.end());
+    text += fmt::format(
+        "median error of answers: {:.3f} m; of their headings {:.2f} deg, at most {:.3g}\n",
+        median(s.errors_m), median(s.turns_deg), most_deg);
   }
   return text;
 }
@@ -113,6 +119,11 @@ double LocalisedQuery::error_m() const {
                              : std::numeric_limits<double>::quiet_NaN();
 }
 
+double LocalisedQuery::heading_error_deg() const {
+  return truth && has_pose() ? degrees * heading_difference_rad(answer.pose, *truth)
+                             : std::numeric_limits<double>::quiet_NaN();
+}
+
 Json queries_json(const std::vector<LocalisedQuery>& queries) {
   Json json{{"queries", Json::array()}};
   for (const LocalisedQuery& query : queries) json["queries"].push_back(query_json(query));
@@ -124,7 +135,8 @@ Json queries_json(const std::vector<LocalisedQuery>& queries) {
                        {"right", s.right},
                        {"interval_95", {interval.low, interval.high}},
                        {"best_guesses_right", s.guesses_right},
-                       {"median_error_m", json_number(median(s.errors_m))}};
+                       {"median_error_m", json_number(median(s.errors_m))},
+                       {"median_heading_error_deg", json_number(median(s.turns_deg))}};
   }
   json["cpu_ms_mean"] = json_number(mean(s.cpu_ms));
   return json;

@@ -25,6 +25,8 @@ struct LocalisedQuery {
   bool has_pose() const;
   /// Distance of answer and truth; NaN without one of them.
   double error_m() const;
+  /// Heading of the answer minus that of the truth; NaN without one of them.
+  double heading_error_deg() const;
 };
 
 Json queries_json(const std::vector<LocalisedQuery>& queries);

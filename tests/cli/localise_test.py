@@ -131,6 +131,7 @@ class Localise(verb_calls.ProgramCase):
         for i, query in enumerate(found['queries']):
             self.assertEqual(query['status'], 'answered', query)
             self.assertLess(query['error_m'], 0.1)
+            self.assertLess(abs(query['heading_error_deg']), 3)
             self.assertEqual(query['node'], i)
         rows = (self.folder / 'answers.csv').read_text().splitlines()
         self.assertEqual(rows[0], 'query,status,x_m,y_m,heading_deg,probability,node,error_m')

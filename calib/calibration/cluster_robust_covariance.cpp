@@ -164,20 +164,24 @@ Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
   const bool has_prior = equations.prior_information.size() > 0;
   if (has_prior) prior_share = congruent(equations.prior_information, L);
   const Eigen::Index first = options.of_first_kind;
-  const bool is_mixed = first >= least && frames - first >= least;
-  Kind all = kind_of(equations, L, 0, frames);
-  all.share = Eigen::MatrixXd::Identity(p, p) - prior_share;
-  if (has_prior) remove_mean(all.pulls);
+  const bool by_bound = options.bound_of == BoundOf::random_effects && !has_many;
+  const bool is_mixed = !by_bound && first >= least && frames - first >= least;
   Eigen::MatrixXd shrunk;
-  if (options.bound_of == BoundOf::random_effects && !has_many) {
-    shrunk = std::max(1.0, inflation_of(all, all.pulls * all.pulls.transpose())) * all.share;
-  } else if (is_mixed) {
+  if (is_mixed) {
     Kind one = kind_of(equations, L, 0, first), other = kind_of(equations, L, first, frames);
-    one.pulls = all.pulls.leftCols(first);
-    other.pulls = all.pulls.rightCols(frames - first);
+    Eigen::MatrixXd pulls(p, frames);
+    pulls << one.pulls, other.pulls;
+    if (has_prior) remove_mean(pulls);
+    one.pulls = pulls.leftCols(first);
+    other.pulls = pulls.rightCols(frames - first);
     shrunk = shrunk_scatter(one) + shrunk_scatter(other);
   } else {
-    shrunk = shrunk_scatter(all);
+    Kind all = kind_of(equations, L, 0, frames);
+    all.share = Eigen::MatrixXd::Identity(p, p) - prior_share;
+    if (has_prior) remove_mean(all.pulls);
+    shrunk = by_bound
+                 ? std::max(1.0, inflation_of(all, all.pulls * all.pulls.transpose())) * all.share
+                 : shrunk_scatter(all);
   }
   const Eigen::MatrixXd matrix = congruent(at_least_identity(shrunk + prior_share), L.transpose());
   return {has_many ? CovarianceKind::clustered : CovarianceKind::jackknife, names,

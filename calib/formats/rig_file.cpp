@@ -149,8 +149,8 @@ void check_held(const std::vector<std::string>& held,
   for (std::size_t i = 0; i < held.size(); ++i) {
     const auto found = std::find(listed.begin(), listed.end(), held[i]);
     if (found == listed.end()) continue;
-    const auto row = found - listed.begin();
-    if (covariance.at("matrix").matrix()(row, row) == 0) continue;
+    const auto row = static_cast<std::size_t>(found - listed.begin());
+    if (covariance.at("matrix").at(row).at(row).number() == 0) continue;
     throw Error(calibration.at("held").at(i).place(),
                 in_quotes(held[i]) + " has a variance in the covariance",
                 "take it out of one of them");

@@ -94,8 +94,7 @@ std::string success_text(const Success& s) {
   const Interval interval = wilson_interval(s.right, s.queries);
   std::string text = fmt::format(
       "within 1 m, whatever the heading: {} of {}, {:.1f} % [{:.1f}, {:.1f}]; answered: {}, right "
-      "of these: {}; "
-      "best guesses right: {}\n",
+      "of these: {}; best guesses right: {}\n",
       s.right, s.queries, 100.0 * s.right / s.queries, 100 * interval.low, 100 * interval.high,
       s.answered, s.right, s.guesses_right);
   if (!s.errors_m.empty()) {

@@ -92,11 +92,7 @@ LoadedStudy load(const std::string& folder, Session& session) {
     throw Error(folder, "contains no finished block", "run the study first");
   }
   loaded.doubts = doubts_of(loaded.study, results);
-  tell_stored(loaded.doubts, session);
-  if (results.blocks_done < results.blocks_total) {
-    session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
-                                          results.blocks_done, results.blocks_total));
-  }
+  tell_stored(loaded.doubts, results, session);
   return loaded;
 }
 

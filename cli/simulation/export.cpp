@@ -51,11 +51,7 @@ void run(const ExportArguments& options, Session& session) {
   } else {
     rows = export_cells(study, results, options.settings, options.output, file);
   }
-  tell_stored(doubts_of(study, results), session);
-  if (results.blocks_done < results.blocks_total) {
-    session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
-                                          results.blocks_done, results.blocks_total));
-  }
+  tell_stored(doubts_of(study, results), results, session);
   outputs.commit();
   const char* what = options.trials ? "trials" : "cells";
   session.result({{"output", options.output}, {"table", what}, {"rows", rows}},

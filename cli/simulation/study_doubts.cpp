@@ -193,9 +193,13 @@ void tell(const StudyDoubts& found, Session& session) {
   for (const std::string& doubt : found.doubts) session.add_trust_warning(doubt);
 }
 
-void tell_stored(const StudyDoubts& found, Session& session) {
+void tell_stored(const StudyDoubts& found, const StudyResults& results, Session& session) {
   for (const std::string& doubt : found.doubts) session.warn(doubt);
   for (const std::string& warning : found.warnings) session.warn(warning);
+  if (results.blocks_done < results.blocks_total) {
+    session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
+                                          results.blocks_done, results.blocks_total));
+  }
 }
 
 }  // namespace vernier::cli

@@ -23,7 +23,8 @@ StudyDoubts doubts_of(const Study& study, const StudyResults& results);
 /// Warnings as such; the doubts make the result untrusted (exit code 3).
 void tell(const StudyDoubts& found, Session& session);
 
-/// The same of a stored study whose results are shown: all are warnings.
-void tell_stored(const StudyDoubts& found, Session& session);
+/// The same of a stored study whose results are shown: all are warnings, but that it is not
+/// finished.
+void tell_stored(const StudyDoubts& found, const StudyResults& results, Session& session);
 
 }  // namespace vernier::cli

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
 #include "calib/base/program_conversation.h"
 #include "calib/base/shown_text.h"
@@ -21,6 +24,9 @@ namespace vernier::internal {
 namespace {
 
 using Outcome = ProgramConversation::Outcome;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* number_key = "question";
 
 constexpr int most_failures = 3;
 
@@ -68,30 +74,47 @@ void AnsweringProgram::start() {
   }
 }
 
-bool AnsweringProgram::ask(const std::function<std::string()>& question,
-                           const std::function<void(std::string_view)>& take) {
+/// Throws Error if the line is not the answer to the last question.
+void AnsweringProgram::take_answer(std::string_view line,
+                                   const std::function<void(const JsonNode&)>& take) const {
+  Json json = parse_json(line, "answer");
+  const JsonNode answer(json, "answer:");
+  if (!answer.has(number_key)) {
+    throw Error(answer.place(), "has not the number of its question", "repeat \"question\"");
+  }
+  const Json number = answer.at(number_key).json();
+  if (number != asked_) {
+    const bool earlier = number.is_number_unsigned() && number < asked_;
+    throw Error(answer.place(),
+                fmt::format("is for question {} where {} was asked{}", in_quotes(number.dump()),
+                            asked_, earlier ? ": more than one line for a question" : ""),
+                "answer each question once");
+  }
+  json.erase(number_key);
+  take(answer);
+}
+
+bool AnsweringProgram::ask(const std::function<Json()>& question,
+                           const std::function<void(const JsonNode&)>& take) {
   if (failures_ >= most_failures) return false;
   if (!program_ && failures_ > 0) start();  // that the first start failed is told here
   ++failures_;
   if (!program_) return false;
+  Json asked{{number_key, ++asked_}};
+  asked.update(question());
   std::string line;
-  const std::string asked = question();
-  bool out_of_turn = program_->has_printed_more();
-  const Outcome outcome = out_of_turn ? Outcome::line : program_->ask(asked, time_limit_s_, line);
+  const Outcome outcome = program_->ask(asked.dump() + "\n", time_limit_s_, line);
   failure_ = fault(outcome, time_limit_s_, *program_);
-  out_of_turn = out_of_turn || (outcome == Outcome::line && program_->has_printed_more());
-  if (out_of_turn) {
-    failure_ = "prints more than one line for a question, so that answers and questions part";
-  } else if (outcome == Outcome::line) {
+  if (outcome == Outcome::line) {
     try {
-      take(line);
+      take_answer(line, take);
       failures_ = 0;
       return true;
     } catch (const Error& error) {
       failure_ = "answers nonsense: " + error.place() + " " + error.fault();
     }
   }
-  program_.reset();  // what it prints later would be taken for the next answer
+  program_.reset();  // what it prints later is no answer
   return false;
 }
 

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "calib/base/json_node.h"
 #include "calib/base/program_conversation.h"
 
 namespace vernier::internal {
@@ -19,18 +22,21 @@ struct ProgramStart {
   double limit_s = 10;
 };
 
-/// A program that answers questions, line by line, for as long as it behaves: one that ends, is
-/// late or answers nonsense is started again with the next question, and after three failures one
-/// after the other left alone. Not for several threads at once.
+/// A program that answers questions, a line of JSON each, for as long as it behaves: one that ends,
+/// is late or answers nonsense is started again with the next question, and after three failures
+/// one after the other left alone. Questions have numbers, "question" from 1, which their answers
+/// repeat: a line too many cannot be taken for the answer to the next question, whenever it comes.
+/// Not for several threads at once.
 class AnsweringProgram {
  public:
   /// Throws Error if it cannot be started. Whether it got ready, the first question shows.
   AnsweringProgram(std::vector<std::string> words, ProgramStart start, double time_limit_s);
 
-  /// Asks, if the program runs, and gives its line to `take`, which throws Error for nonsense.
-  /// Whether there was an answer that was taken; if not, failure() says why.
-  bool ask(const std::function<std::string()>& question,
-           const std::function<void(std::string_view)>& take);
+  /// Asks, if the program runs, and gives its answer without the number to `take`, which throws
+  /// Error for nonsense. The question is an object. Whether there was an answer that was taken; if
+  /// not, failure() says why.
+  bool ask(const std::function<nlohmann::ordered_json()>& question,
+           const std::function<void(const JsonNode&)>& take);
 
   /// The last one, as a predicate of the program: "has ended without an answer".
   const std::string& failure() const { return failure_; }
@@ -40,12 +46,14 @@ class AnsweringProgram {
 
  private:
   void start();
+  void take_answer(std::string_view line, const std::function<void(const JsonNode&)>& take) const;
 
   std::vector<std::string> words_;
   ProgramStart start_;
   double time_limit_s_;
   std::unique_ptr<ProgramConversation> program_;
-  int failures_ = 0;  // one after the other
+  std::uint64_t asked_ = 0;  // the number of the last question
+  int failures_ = 0;         // one after the other
   std::string failure_;
 };
 

@@ -112,15 +112,6 @@ ProgramConversation::Outcome ProgramConversation::ask(std::string_view lines,
   }
 }
 
-bool ProgramConversation::has_printed_more() {
-  pollfd ready{output_.ours(), POLLIN, 0};
-  while (pending_.empty() && output_.ours() >= 0 && ::poll(&ready, 1, 0) > 0) {
-    read_from(output_, pending_, longest_line + 1);
-    ready.fd = output_.ours();
-  }
-  return !pending_.empty();
-}
-
 double ProgramConversation::cpu_s() const {
   clockid_t clock{};
   timespec spent{};

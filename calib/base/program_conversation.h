@@ -37,9 +37,6 @@ class ProgramConversation {
   /// kept for later answers. Does not throw.
   Outcome ask(std::string_view lines, double time_limit_s, std::string& answer);
 
-  /// Whether it has printed something that ask() has not taken.
-  bool has_printed_more();
-
   /// CPU time of the program so far, seconds, all its threads; children that it started only when
   /// it has waited for them. 0 if the system does not tell.
   double cpu_s() const;

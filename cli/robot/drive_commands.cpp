@@ -105,12 +105,11 @@ std::vector<DriveCommand> read_commands(const std::string& file, const Different
   return commands;
 }
 
-std::optional<DriveCommand> parse_drive_answer(std::string_view line,
+std::optional<DriveCommand> parse_drive_answer(const JsonNode& answer,
                                                const DifferentialDrive& drive) {
-  const Json json = parse_json(line, "answer");
-  const JsonNode node(json, "answer:");
-  if (node.has("done") && json.size() == 1 && json["done"] == true) return std::nullopt;
-  return command_of(node, drive);
+  const bool done = answer.has("done") && answer.size() == 1 && answer.at("done").json() == true;
+  if (done) return std::nullopt;
+  return command_of(answer, drive);
 }
 
 }  // namespace vernier::cli

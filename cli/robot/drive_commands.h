@@ -4,9 +4,9 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "calib/base/json_node.h"
 #include "cli/program/namespaces.h"
 #include "sim/differential_drive.h"
 
@@ -17,7 +17,7 @@ namespace vernier::cli {
 std::vector<DriveCommand> read_commands(const std::string& file, const DifferentialDrive& drive);
 
 /// What a program says to an observation: a command, or nothing if it is done. Throws Error.
-std::optional<DriveCommand> parse_drive_answer(std::string_view line,
+std::optional<DriveCommand> parse_drive_answer(const vernier::internal::JsonNode& answer,
                                                const DifferentialDrive& drive);
 
 }  // namespace vernier::cli

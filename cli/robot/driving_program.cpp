@@ -4,9 +4,9 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "calib/base/answering_program.h"
+#include "calib/base/json_node.h"
 #include "calib/base/program_run.h"
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
@@ -25,7 +25,7 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr int protocol_version = 1;
+constexpr int protocol_version = 2;
 constexpr double start_s = 10;  // to get ready, in addition to the time limit of an observation
 
 std::string hello_line(const Rig& told, const RobotOptions& robot) {
@@ -82,8 +82,8 @@ DrivingProgram::DrivingProgram(const std::string& command,
 
 std::optional<DriveCommand> DrivingProgram::command(const RobotObservation& seen) {
   std::optional<DriveCommand> chosen;
-  const auto take = [&](std::string_view line) { chosen = parse_drive_answer(line, drive_); };
-  const auto question = [&] { return observation_json(seen).dump() + "\n"; };
+  const auto take = [&](const JsonNode& said) { chosen = parse_drive_answer(said, drive_); };
+  const auto question = [&] { return observation_json(seen); };
   if (!program_.ask(question, take)) failure_ = program_.failure();
   return failure_.empty() ? chosen : std::nullopt;
 }

@@ -23,7 +23,8 @@ nodes = [json.loads(sys.stdin.readline()) for _ in range(hello['nodes'])]
 known = [uprights(node) for node in nodes]
 print(json.dumps({'ready': True}), flush=True)
 for line in sys.stdin:
-    seen = uprights(json.loads(line)['looks'][0])
+    query = json.loads(line)
+    seen = uprights(query['looks'][0])
     scores = [shared(seen, node) for node in known]
     best = max(range(len(nodes)), key=scores.__getitem__)
     if scores[best] < 3:
@@ -31,4 +32,4 @@ for line in sys.stdin:
     else:
         answer = {'status': 'answered', 'node': best, 'pose': nodes[best]['pose'],
                   'score': scores[best]}
-    print(json.dumps(answer), flush=True)
+    print(json.dumps({'question': query['question'], **answer}), flush=True)

@@ -27,4 +27,4 @@ for line in sys.stdin:
             kept.append({'id': edge['id']})
         if doubled < GHOSTS:
             ghosts.append(ghost(edge, aside_px))
-    print(json.dumps({'edges': kept + ghosts}), flush=True)
+    print(json.dumps({'question': view['question'], 'edges': kept + ghosts}), flush=True)

@@ -31,4 +31,4 @@ for line in sys.stdin:
     trial = json.loads(line)
     seen_px = disparity_px(trial['true_cameras'], range_m)
     off_m = depth_m(trial['told_cameras'], seen_px) - range_m
-    print(json.dumps({'error': abs(off_m), 'off_m': off_m}), flush=True)
+    print(json.dumps({'question': trial['question'], 'error': abs(off_m), 'off_m': off_m}), flush=True)

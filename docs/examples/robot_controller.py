@@ -36,4 +36,4 @@ for line in sys.stdin:
         answer = {'speed_mps': 0, 'turn_radps': 0.8 * side, 'duration_s': 0.5}
     else:
         answer = {'speed_mps': 0.4, 'turn_radps': 0, 'duration_s': 0.5}
-    print(json.dumps(answer), flush=True)
+    print(json.dumps({'question': seen['question'], **answer}), flush=True)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fuzz/fuzz_target.h"
+#include "fuzz/program_answer.h"
 #include "sim/differential_drive.h"
 
 namespace vernier::fuzz {
@@ -36,7 +37,8 @@ void run_drive_commands(std::string_view bytes) {
 }
 
 void run_drive_answer(std::string_view bytes) {
-  const auto command = accepted([&] { return cli::parse_drive_answer(bytes, {}); });
+  const auto command =
+      accepted_answer(bytes, [](const auto& said) { return cli::parse_drive_answer(said, {}); });
   if (command && *command) check_command(**command);
 }
 

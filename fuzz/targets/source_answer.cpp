@@ -9,6 +9,7 @@
 #include "calib/rig.h"
 #include "fuzz/example_rigs.h"
 #include "fuzz/fuzz_target.h"
+#include "fuzz/program_answer.h"
 #include "sim/sources/program_source.h"
 #include "sim/uncertainty_source.h"
 
@@ -35,8 +36,8 @@ SensedView view() {
 void run_source_answer(std::string_view bytes) {
   static const Rig rig = example_rig("radial1", 2);
   SensedView changed = view();
-  const auto taken = accepted([&] {
-    sim::internal::apply_answer(bytes, rig, changed);
+  const auto taken = accepted_answer(bytes, [&](const auto& said) {
+    sim::internal::apply_answer(said, rig, changed);
     return true;
   });
   if (!taken) return;

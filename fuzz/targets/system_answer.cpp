@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fuzz/fuzz_target.h"
+#include "fuzz/program_answer.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/system_kind.h"
@@ -23,7 +24,9 @@ void run_system_answer(std::string_view bytes) {
   system.measured_names = {"drift_m", "steps"};
   TrialResult trial;
   trial.error = std::nan("");
-  if (!accepted([&] { return (parse_system_answer(bytes, system, trial), 0); })) return;
+  const auto taken = accepted_answer(
+      bytes, [&](const auto& said) { return (parse_system_answer(said, system, trial), 0); });
+  if (!taken) return;
   require(trial.measured && trial.measured->size() == 2, "every quantity has its place");
   require(trial.answered() == (trial.status == localise::LocalisationStatus::answered) &&
               (trial.answered() ? trial.error >= 0 && std::isfinite(trial.error)

@@ -13,6 +13,7 @@
 #include "calib/rig.h"
 #include "datasets/shipped.h"
 #include "fuzz/fuzz_target.h"
+#include "fuzz/program_answer.h"
 #include "localise/localiser.h"
 #include "localise/methods/program_localiser.h"
 #include "localise/place.h"
@@ -104,7 +105,8 @@ std::vector<std::string> view_file_seeds() {
 void run_localiser_answer(std::string_view bytes) {
   TopologicalMap map;
   map.nodes.resize(3);
-  const auto answer = accepted([&] { return localise::internal::parse_answer(bytes, map); });
+  const auto answer = accepted_answer(
+      bytes, [&](const auto& said) { return localise::internal::parse_answer(said, map); });
   if (!answer) return;
   require(std::isfinite(answer->pose.x_m) && std::isfinite(answer->pose.heading_rad),
           "poses are finite");

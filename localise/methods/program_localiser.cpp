@@ -5,13 +5,11 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "calib/base/answering_program.h"
 #include "calib/base/json_node.h"
-#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
@@ -28,7 +26,7 @@ using vernier::internal::JsonNode;
 
 namespace {
 
-constexpr int protocol_version = 1;
+constexpr int protocol_version = 2;
 /// To read a map, in addition to the time limit of a query; for each node.
 constexpr double start_s = 10, node_s = 0.05;
 
@@ -74,9 +72,7 @@ double parse_number(const JsonNode& node, const char* key) {
 
 }  // namespace
 
-LocalisationAnswer parse_answer(std::string_view line, const TopologicalMap& map) {
-  const Json json = vernier::internal::parse_json(line, "answer");
-  const JsonNode node(json, "answer:");
+LocalisationAnswer parse_answer(const JsonNode& node, const TopologicalMap& map) {
   LocalisationAnswer answer;
   answer.status = parse_status(node.at("status"));
   const bool has_pose = answer.status == LocalisationStatus::answered || node.has("pose");
@@ -116,9 +112,9 @@ LocalisationAnswer ProgramLocaliser::localise_looks(std::span<const Look> looks)
   // counted at an answer counts for the next one.
   const auto question = [&] {
     if (!counted_cpu_s_) counted_cpu_s_ = program_.cpu_s();
-    return Json{{"looks", looks_json(looks)}}.dump() + "\n";
+    return Json{{"looks", looks_json(looks)}};
   };
-  const auto take = [&](std::string_view line) { answer = parse_answer(line, map_); };
+  const auto take = [&](const JsonNode& said) { answer = parse_answer(said, map_); };
   if (program_.ask(question, take)) {
     const double now_s = program_.cpu_s();
     answer.program_cpu_ms = 1e3 * (now_s - *counted_cpu_s_);

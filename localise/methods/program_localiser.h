@@ -4,9 +4,9 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "calib/base/answering_program.h"
+#include "calib/base/json_node.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -31,7 +31,7 @@ class ProgramLocaliser : public Localiser {
   mutable std::optional<double> counted_cpu_s_;  ///< CPU time up to the last answer
 };
 
-/// Parses an answer. Throws Error for what is not one.
-LocalisationAnswer parse_answer(std::string_view line, const TopologicalMap& map);
+/// Reads an answer. Throws Error for what is not one.
+LocalisationAnswer parse_answer(const vernier::internal::JsonNode& node, const TopologicalMap& map);
 
 }  // namespace vernier::localise::internal

@@ -14,14 +14,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "calib/base/all_within.h"
 #include "calib/base/answering_program.h"
 #include "calib/base/json_node.h"
-#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -44,7 +42,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int protocol_version = 1;
+constexpr int protocol_version = 2;
 constexpr double start_s = 10;   ///< to get ready, in addition to the time limit of a view
 constexpr double most_px = 1e6;  ///< of a coordinate
 constexpr std::size_t most_added = 100'000;
@@ -61,7 +59,7 @@ Json segment_json(const ImageSegment& s) {
 
 std::uint32_t identity(const SensedEdge& edge) { return edge.truth.feature * 2 + edge.piece; }
 
-std::string view_line(const SensingContext& context, const SensedView& view) {
+Json view_json(const SensingContext& context, const SensedView& view) {
   Json edges = Json::array();
   for (const SensedEdge& edge : view.edges) {
     edges.push_back({{"id", identity(edge)},
@@ -72,9 +70,7 @@ std::string view_line(const SensingContext& context, const SensedView& view) {
   return Json{{"seed", context.seed},
               {"trial", context.trial},
               {"frame", context.frame},
-              {"edges", std::move(edges)}}
-             .dump() +
-         "\n";
+              {"edges", std::move(edges)}};
 }
 
 ImageSegment parse_segment(const JsonNode& node) {
@@ -132,9 +128,8 @@ bool parse_flag(const JsonNode& node) {
 
 }  // namespace
 
-void apply_answer(std::string_view line, const Rig& rig, SensedView& view) {
-  const Json json = parse_json(line, "answer");
-  const JsonNode edges = JsonNode(json, "answer:").at("edges");
+void apply_answer(const JsonNode& answer, const Rig& rig, SensedView& view) {
+  const JsonNode edges = answer.at("edges");
   edges.array();
   std::map<std::uint32_t, SensedEdge*> known;  // those not yet answered
   for (SensedEdge& edge : view.edges) known[identity(edge)] = &edge;
@@ -176,8 +171,8 @@ ProgramSource::ProgramSource(const SourceSettings& settings, const Rig& rig)
 
 void ProgramSource::apply(const SensingContext& context, SensedView& view) const {
   const std::lock_guard lock(mutex_);
-  const auto question = [&] { return view_line(context, view); };
-  const auto take = [&](std::string_view line) { apply_answer(line, context.rig, view); };
+  const auto question = [&] { return view_json(context, view); };
+  const auto take = [&](const JsonNode& answer) { apply_answer(answer, context.rig, view); };
   if (!program_.ask(question, take)) view.failure = "the source's program " + program_.failure();
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "calib/base/answering_program.h"
+#include "calib/base/json_node.h"
 #include "calib/rig.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
@@ -30,7 +31,7 @@ class ProgramSource : public UncertaintySource {
   mutable vernier::internal::AnsweringProgram program_;
 };
 
-/// Makes of a view what a line of the program says. Throws Error for what is no answer to it.
-void apply_answer(std::string_view line, const Rig& rig, SensedView& view);
+/// Makes of a view what an answer of the program says. Throws Error for what is none to it.
+void apply_answer(const vernier::internal::JsonNode& answer, const Rig& rig, SensedView& view);
 
 }  // namespace vernier::sim::internal

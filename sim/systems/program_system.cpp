@@ -9,14 +9,12 @@
 #include <limits>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "calib/base/answering_program.h"
 #include "calib/base/error_place.h"
 #include "calib/base/json_node.h"
-#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/base/thread_clock.h"
 #include "calib/error.h"
@@ -37,7 +35,7 @@ using Json = rig_json::Json;
 
 namespace {
 
-constexpr int system_protocol = 1;
+constexpr int system_protocol = 2;
 constexpr double ready_s = 10;  ///< to get ready
 
 /// The conversation's first line.
@@ -92,9 +90,9 @@ class ProgramSystem : public SystemUnderTest {
     if (!told.failure.empty()) return result;
     const double cpu_s = program_->cpu_s();
     const ThreadClock clock;
-    const auto question = [&] { return question_line(trial, told.rig); };
-    const auto take = [&](std::string_view line) {
-      parse_system_answer(line, cell_.system, result);
+    const auto question = [&] { return question_json(trial, told.rig); };
+    const auto take = [&](const JsonNode& answer) {
+      parse_system_answer(answer, cell_.system, result);
     };
     if (program_->ask(question, take)) {
       result.cpu_ms = 1e3 * std::max(0.0, program_->cpu_s() - cpu_s);
@@ -107,12 +105,10 @@ class ProgramSystem : public SystemUnderTest {
   }
 
  private:
-  std::string question_line(std::uint32_t trial, const Rig& told) const {
+  Json question_json(std::uint32_t trial, const Rig& told) const {
     return Json{{"trial", trial},
                 {"true_cameras", true_rig_},
-                {"told_cameras", rig_json::cameras_json(told)}}
-               .dump() +
-           "\n";
+                {"told_cameras", rig_json::cameras_json(told)}};
   }
 
   const StudyCell& cell_;
@@ -124,22 +120,20 @@ class ProgramSystem : public SystemUnderTest {
 
 }  // namespace
 
-void parse_system_answer(std::string_view line, const SystemSettings& system, TrialResult& trial) {
-  const Json json = parse_json(line, "answer");
-  const JsonNode node(json, "answer:");
-  const bool answered = has_answered(node);
+void parse_system_answer(const JsonNode& answer, const SystemSettings& system, TrialResult& trial) {
+  const bool answered = has_answered(answer);
   trial.status = answered ? LocalisationStatus::answered : LocalisationStatus::unsure;
-  if (answered || node.has("error")) {
-    trial.error = bounded_number(node.at("error"));
+  if (answered || answer.has("error")) {
+    trial.error = bounded_number(answer.at("error"));
     if (!(trial.error >= 0)) {
-      throw Error(node.at("error").place(), "is negative", "give its size");
+      throw Error(answer.at("error").place(), "is negative", "give its size");
     }
   }
   trial.measured.emplace(system.measured_names.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < system.measured_names.size(); ++i) {
     const std::string& name = system.measured_names[i];
-    if (node.has(name) && !node.at(name).json().is_null()) {
-      (*trial.measured)[i] = bounded_number(node.at(name));
+    if (answer.has(name) && !answer.at(name).json().is_null()) {
+      (*trial.measured)[i] = bounded_number(answer.at(name));
     }
   }
 }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string_view>
-
+#include "calib/base/json_node.h"
 #include "sim/experiment.h"
 #include "sim/study/system_kind.h"
 
@@ -15,6 +14,8 @@ namespace vernier::sim::internal {
 SystemKind program_kind();
 
 /// Reads an answer into a trial that has not got one. Throws Error for what is not one.
-void parse_system_answer(std::string_view line, const SystemSettings& system, TrialResult& trial);
+void parse_system_answer(const vernier::internal::JsonNode& answer,
+                         const SystemSettings& system,
+                         TrialResult& trial);
 
 }  // namespace vernier::sim::internal

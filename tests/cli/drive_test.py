@@ -27,8 +27,9 @@ commands = [json.loads(line) for line in open('log.jsonl')]
 sys.stdin.readline()
 print('{"ready": true}', flush=True)
 for line in sys.stdin:
-    frame = json.loads(line)['frame']
-    print(json.dumps(commands[frame] if frame < len(commands) else {'done': True}), flush=True)
+    asked = json.loads(line)
+    answer = commands[asked['frame']] if asked['frame'] < len(commands) else {'done': True}
+    print(json.dumps({'question': asked['question'], **answer}), flush=True)
 ''',
     'dies': '''
 import sys
@@ -36,7 +37,7 @@ sys.stdin.readline()
 print('{"ready": true}', flush=True)
 for i in range(2):
     sys.stdin.readline()
-    print('{"speed_mps": 0.1, "turn_radps": 0, "duration_s": 0.2}', flush=True)
+    print('{"question": %d, "speed_mps": 0.1, "turn_radps": 0, "duration_s": 0.2}' % (i + 1), flush=True)
 sys.exit('out of ideas')
 ''',
     'hangs': '''
@@ -50,7 +51,7 @@ import sys
 sys.stdin.readline()
 print('{"ready": true}', flush=True)
 sys.stdin.readline()
-print('{"speed_mps": 7, "turn_radps": 0, "duration_s": 0.2}', flush=True)
+print('{"question": 1, "speed_mps": 7, "turn_radps": 0, "duration_s": 0.2}', flush=True)
 sys.stdin.read()
 ''',
     'unready': '''

@@ -94,10 +94,11 @@ class Localise(verb_calls.ProgramCase):
             'for _ in range(json.loads(sys.stdin.readline())["nodes"]): sys.stdin.readline()\n'
             'print(json.dumps({"ready": True}), flush=True)\n'
             'for line in sys.stdin:\n'
-            '    corners = json.loads(line)["looks"][0].get("corners", [])\n'
+            '    query = json.loads(line)\n'
+            '    corners = query["looks"][0].get("corners", [])\n'
             '    length = len(corners[0]["descriptor"]) if corners else 0\n'
-            '    print(json.dumps({"status": "unsure", "pose": [length, 0, 0],'
-            ' "score": len(corners)}), flush=True)\n')
+            '    print(json.dumps({"question": query["question"], "status": "unsure", '
+            '"pose": [length, 0, 0], "score": len(corners)}), flush=True)\n')
         self.done('map', 'make', '--world', 'workshop', '--spacing-m', '9', '-o', 'w.map')
         words = ['localise', 'w.map', '--world', 'workshop', '-n', '2', '--method', 'program',
                  '--command', 'python3 counts.py', '--json']

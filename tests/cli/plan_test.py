@@ -30,7 +30,7 @@ for line in sys.stdin:
     if "trial" in asked:
         x = [asked[of][1]["from_first"]["translation_m"][0]
              for of in ("told_cameras", "true_cameras")]
-        answer = {"error": abs(x[0] - x[1])}
+        answer = {"question": asked["question"], "error": abs(x[0] - x[1])}
     print(json.dumps(answer), flush=True)
 '''
 

@@ -261,7 +261,8 @@ hello = json.loads(sys.stdin.readline())
 nodes = [json.loads(sys.stdin.readline()) for _ in range(hello['nodes'])]
 print('{"ready": true}', flush=True)
 for line in sys.stdin:
-    print(json.dumps({'status': 'answered', 'node': 0, 'pose': nodes[0]['pose'], 'score': 1, %s}), flush=True)
+    print(json.dumps({'question': json.loads(line)['question'], 'status': 'answered', 'node': 0,
+                      'pose': nodes[0]['pose'], 'score': 1, %s}), flush=True)
 '''
 STUDY = '''[study]
 trials = 40

@@ -141,7 +141,8 @@ class Readers(Store):
             '    sys.stdin.readline()\n'
             'print(json.dumps({"ready": True}), flush=True)\n'
             'for line in sys.stdin:\n'
-            '    print(json.dumps({"status": "unsure"}), flush=True)\n')
+            '    number = json.loads(line)["question"]\n'
+            '    print(json.dumps({"question": number, "status": "unsure"}), flush=True)\n')
         self.file.write_text(STUDY + '[localiser]\nmethod = "program"\ncommand = "python3 own.py"\n')
         ran = json.loads(self.run_study(cwd=self.folder).stdout)
         told = 'the files of the program "python3 own.py" were others when the study ran'

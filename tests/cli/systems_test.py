@@ -157,8 +157,9 @@ class Systems(unittest.TestCase):
             'json.loads(sys.stdin.readline())\n'
             'print(json.dumps({"ready": True}), flush=True)\n'
             'for line in sys.stdin:\n'
-            '    trial = json.loads(line)["trial"]\n'
-            '    print(json.dumps({"error": "far" if trial == 7 else 0}), flush=True)\n')
+            '    asked = json.loads(line)\n'
+            '    error = "far" if asked["trial"] == 7 else 0\n'
+            '    print(json.dumps({"question": asked["question"], "error": error}), flush=True)\n')
         text = shorter('program', 30).replace('own_system.py', 'sometimes.py')
         done = self.run_study(text, code=3)
         self.assertIn('a program failed in 1 of 30 trials', done.stderr)

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
 #include <string>
-#include <thread>
 
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -13,6 +11,7 @@
 #include "tests/support/camera_views.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
+#include "tests/support/python_program.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {
@@ -39,52 +38,38 @@ LocaliserOptions running(const std::string& command, double time_limit_s = 10) {
   return options;
 }
 
-/// A program in Python: what it does before it is ready, and with each query.
+/// A program in Python, and what it does with each query.
 std::string python(const Folder& folder, const std::string& with_query) {
-  const std::string program =
-      "import json, sys, os, time\n"
-      "n = json.loads(sys.stdin.readline())['nodes']\n"
-      "nodes = [json.loads(sys.stdin.readline()) for _ in range(n)]\n"
-      "print('{\"ready\": true}', flush=True)\n"
-      "for number, line in enumerate(sys.stdin):\n"
-      "    " +
-      with_query + "\n";
+  const std::string program = test::python_program(test::python_reads_map, with_query);
   return "python3 '" + folder.write("program.py", program).string() + "'";
 }
 
-// A second line would be taken for the answer to the next question.
-TEST(ProgramLocaliser, MayPrintOneLineForAQuestion) {
-  const TopologicalMap map = five_rooms();
-  const Folder folder;
-  const std::string line = R"('{"status": "unsure"}')";
-  const auto twice = make_localiser(
-      "program", map,
-      running(python(folder, "print(" + line + " + chr(10) + " + line + ", flush=True)")));
-  for (int i = 0; i < 2; ++i) {
-    const LocalisationAnswer said = twice->localise(map.nodes[i].view);
-    EXPECT_EQ(said.status, LocalisationStatus::failed);
-    EXPECT_NE(said.failure.find("prints more than one line for a question"), std::string::npos)
-        << said.failure;
-  }
+/// Whose fourth answer, and it alone, comes twice, the second time so much later.
+std::string says_one_twice(const Folder& folder, const std::string& later_s) {
+  return python(folder,
+                "said = {'status': 'answered', 'pose': [number, 0, 0]}; say(said); "
+                "[time.sleep(" +
+                    later_s + "), say(said)] if number == 3 else 0");
 }
 
-// Also if it comes late.
-TEST(ProgramLocaliser, MayPrintNothingUnasked) {
+// A line too many is never taken for the answer to the next question, whenever it comes.
+TEST(ProgramLocaliser, MayAnswerAQuestionOnce) {
   const TopologicalMap map = five_rooms();
-  const Folder folder;
-  const std::filesystem::path told = folder.path() / "told";
-  const auto late = make_localiser(
-      "program", map,
-      running(python(folder, R"(print('{"status": "unsure"}', flush=True); time.sleep(0.2); )"
-                             R"(print('{"status": "unsure"}', flush=True); open(')" +
-                                 told.string() + R"(', 'w').close())")));
-  EXPECT_NE(late->localise(map.nodes[0].view).status, LocalisationStatus::failed);
-  for (int wait = 0; wait < 600 && !std::filesystem::exists(told); ++wait) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (const std::string later_s : {"0", "0.02", "0.2"}) {
+    const Folder folder;
+    const auto twice = make_localiser("program", map, running(says_one_twice(folder, later_s)));
+    for (int i = 0; i < 8; ++i) {
+      const LocalisationAnswer said = twice->localise(map.nodes[0].view);
+      if (i == 4) {
+        EXPECT_EQ(said.status, LocalisationStatus::failed);
+        EXPECT_NE(said.failure.find("more than one line for a question"), std::string::npos)
+            << said.failure;
+        continue;
+      }
+      EXPECT_EQ(said.status, LocalisationStatus::answered) << said.failure;
+      EXPECT_EQ(said.pose.x_m, i < 4 ? i : i - 5) << later_s;  // it is started again
+    }
   }
-  const LocalisationAnswer said = late->localise(map.nodes[1].view);
-  EXPECT_EQ(said.status, LocalisationStatus::failed);
-  EXPECT_NE(said.failure.find("prints more than one line"), std::string::npos) << said.failure;
 }
 
 TEST(ProgramLocaliser, WorksAsTheManualSays) {
@@ -113,9 +98,9 @@ TEST(ProgramLocaliser, ReadsEveryAnswer) {
   const auto localiser = make_localiser(
       "program", map,
       running(python(folder,
-                     "print(json.dumps({'status': ['answered', 'unsure', 'tie', 'unsure'][number], "
+                     "say({'status': ['answered', 'unsure', 'tie', 'unsure'][number], "
                      "**({'pose': [1, 2, 0.5], 'probability': 0.25, 'score': -3, 'node': None, "
-                     "'next_turn_rad': 1.5} if number < 2 else {})}), flush=True)")));
+                     "'next_turn_rad': 1.5} if number < 2 else {})})")));
   const LocalisationAnswer sure = localiser->localise({}), unsure = localiser->localise({});
   EXPECT_EQ(sure.status, LocalisationStatus::answered) << sure.failure;
   EXPECT_EQ(sure.pose.y_m, 2);
@@ -138,13 +123,15 @@ TEST(ProgramLocaliser, SurvivesItsProgram) {
       {"sys.exit('lost my way')", "lost my way"},
       {"time.sleep(60)", "no answer within"},
       {"print('hello', flush=True)", "nonsense"},
-      {"print('{\"status\": \"lost\"}', flush=True)", "no status"},
-      {"print('{\"status\": \"answered\"}', flush=True)", "pose"},
-      {"print('{\"status\": \"answered\", \"pose\": [1, 2, NaN]}', flush=True)", "nonsense"},
-      {"print('{\"status\": \"answered\", \"pose\": [1, 2, 400]}', flush=True)",
-       "more than a turn"},
-      {"print('{\"status\": \"tie\", \"node\": 5}', flush=True)", "node"},
-      {"print('{\"status\": \"tie\", \"probability\": 2}', flush=True)", "from 0 to 1"},
+      {"print(" + good + ", flush=True)", "has not the number of its question"},
+      {"say('{\"question\": 2, \"status\": \"tie\"}')", "is for question '2' where 1 was asked"},
+      {"say('{\"question\": [1], \"status\": \"tie\"}')", "is for question"},
+      {"say('{\"status\": \"lost\"}')", "no status"},
+      {"say('{\"status\": \"answered\"}')", "pose"},
+      {"say('{\"status\": \"answered\", \"pose\": [1, 2, NaN]}')", "nonsense"},
+      {"say('{\"status\": \"answered\", \"pose\": [1, 2, 400]}')", "more than a turn"},
+      {"say('{\"status\": \"tie\", \"node\": 5}')", "node"},
+      {"say('{\"status\": \"tie\", \"probability\": 2}')", "from 0 to 1"},
       {"os.write(1, b'x' * 20000000)", "16 MB"},
       {"os.kill(os.getpid(), 9)", "ended"},
       {"os.close(1), time.sleep(60)", "ended"},
@@ -154,10 +141,9 @@ TEST(ProgramLocaliser, SurvivesItsProgram) {
     const std::string mark = (folder.path() / "again").string();
     const auto localiser = make_localiser(
         "program", map,
-        running(
-            python(folder, "print(" + good + ", flush=True) if os.path.exists('" + mark +
-                               "') else [open('" + mark + "', 'w').close(), " + fault.does + "]"),
-            1.5));
+        running(python(folder, "say(" + good + ") if os.path.exists('" + mark + "') else [open('" +
+                                   mark + "', 'w').close(), " + fault.does + "]"),
+                1.5));
     const LocalisationAnswer spoilt = localiser->localise({});
     EXPECT_EQ(spoilt.status, LocalisationStatus::failed) << fault.does;
     EXPECT_NE(spoilt.failure.find(fault.says), std::string::npos)

@@ -18,6 +18,7 @@
 #include "stereo/segment.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
+#include "tests/support/python_program.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -93,14 +94,8 @@ TEST(OwnSource, IsRefusedWithoutANameOrUnderATakenOne) {
 /// A program in Python, and what it does with each view.
 std::string python(const Folder& folder, const std::string& with_view) {
   const std::string program =
-      "import json, sys, os, time\n"
-      "cameras = json.loads(sys.stdin.readline())['cameras']\n"
-      "print('{\"ready\": true}', flush=True)\n"
-      "for number, line in enumerate(sys.stdin):\n"
-      "    view = json.loads(line)\n"
-      "    edges = view['edges']\n"
-      "    " +
-      with_view + "\n";
+      test::python_program("cameras = json.loads(sys.stdin.readline())['cameras']\n",
+                           "view = asked\n    edges = view['edges']\n    " + with_view);
   return "python3 '" + folder.write("program.py", program).string() + "'";
 }
 
@@ -120,7 +115,7 @@ StereoObservation sense_by(const Sensor& sensor, std::uint32_t trial) {
   return sensor.sense(test::office_look(), {.seed = 7, .trial = trial, .frame = 2});
 }
 
-const std::string answer = "print(json.dumps({'edges': edges}), flush=True)";
+const std::string answer = "say({'edges': edges})";
 
 TEST(ProgramSource, ThatReturnsEverythingChangesNothing) {
   const Folder folder;
@@ -195,20 +190,16 @@ TEST(ProgramSource, SurvivesItsProgram) {
       {"sys.exit('lost my way')", "lost my way"},
       {"time.sleep(60)", "no answer within"},
       {"print('hello', flush=True)", "nonsense"},
-      {"print('{}', flush=True)", "edges"},
-      {"print('{\"edges\": 3}', flush=True)", "nonsense"},
-      {"print('{\"edges\": [{\"id\": 1}]}', flush=True)", "no edge of the view"},
-      {"print('{\"edges\": [{\"id\": -1}]}', flush=True)", "no edge of the view"},
-      {"print('{\"edges\": [{\"id\": 1e300}]}', flush=True)", "no edge of the view"},
-      {"print(json.dumps({'edges': edges + edges[:1]}), flush=True)", "twice"},
-      {"print('{\"edges\": [{\"left_px\": [1, 2, 3, 4]}]}', flush=True)", "right_px"},
-      {"print('{\"edges\": [{\"left_px\": [1, 2, 3], \"right_px\": [1, 2, 3, 4]}]}', flush=True)",
-       "segment"},
-      {"print('{\"edges\": [{\"left_px\": [1, 2, 1, 2], \"right_px\": [1, 2, 3, 4]}]}', "
-       "flush=True)",
-       "segment"},
-      {"print('{\"edges\": [{\"left_px\": [1, 2, 1, 9e9], \"right_px\": [1, 2, 3, 4]}]}', "
-       "flush=True)",
+      {"say('{}')", "edges"},
+      {"say('{\"edges\": 3}')", "nonsense"},
+      {"say('{\"edges\": [{\"id\": 1}]}')", "no edge of the view"},
+      {"say('{\"edges\": [{\"id\": -1}]}')", "no edge of the view"},
+      {"say('{\"edges\": [{\"id\": 1e300}]}')", "no edge of the view"},
+      {"say({'edges': edges + edges[:1]})", "twice"},
+      {"say('{\"edges\": [{\"left_px\": [1, 2, 3, 4]}]}')", "right_px"},
+      {"say('{\"edges\": [{\"left_px\": [1, 2, 3], \"right_px\": [1, 2, 3, 4]}]}')", "segment"},
+      {"say('{\"edges\": [{\"left_px\": [1, 2, 1, 2], \"right_px\": [1, 2, 3, 4]}]}')", "segment"},
+      {"say('{\"edges\": [{\"left_px\": [1, 2, 1, 9e9], \"right_px\": [1, 2, 3, 4]}]}')",
        "segment"},
       {"os.write(1, b'x' * 20000000)", "16 MB"},
       {"os.kill(os.getpid(), 9)", "ended"},

@@ -24,6 +24,7 @@
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/foreign_files.h"
+#include "tests/support/python_program.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -139,17 +140,12 @@ class First : public Localiser {
 /// A program that gives up in the middle spoils its trial and no other.
 TEST_F(Experiments, SurviveAProgramThatDies) {
   const test::Folder folder;
-  const auto program =
-      folder.write("mine.py",
-                   "import json, sys\n"
-                   "n = json.loads(sys.stdin.readline())['nodes']\n"
-                   "nodes = [json.loads(sys.stdin.readline()) for _ in range(n)]\n"
-                   "print('{\"ready\": true}', flush=True)\n"
-                   "for number, line in enumerate(sys.stdin):\n"
-                   "    if number == 3: sys.exit('no more')\n"
-                   "    assert json.loads(line)['looks'][0]['lines']\n"
-                   "    print(json.dumps({'status': 'answered', 'node': 2,\n"
-                   "                      'pose': nodes[2]['pose']}), flush=True)\n");
+  const auto program = folder.write(
+      "mine.py",
+      test::python_program(test::python_reads_map,
+                           "if number == 3: sys.exit('no more')\n"
+                           "    assert asked['looks'][0]['lines']\n"
+                           "    say({'status': 'answered', 'node': 2, 'pose': nodes[2]['pose']})"));
   ExperimentSettings s = settings(QueryProtocol::path);
   s.method = "program";
   s.localiser.command = "python3 '" + program.string() + "'";
@@ -381,17 +377,14 @@ TEST_F(Experiments, AreTheSameInAnyNumberOfThreads) {
 TEST_F(Experiments, SurviveASourceThatDies) {
   const test::Folder folder;
   const auto run = [&](const std::string& when) {
-    const auto program = folder.write("mine.py",
-                                      "import json, sys\n"
-                                      "sys.stdin.readline()\n"
-                                      "print('{\"ready\": true}', flush=True)\n"
-                                      "for line in sys.stdin:\n"
-                                      "    view = json.loads(line)\n"
-                                      "    if " +
-                                          when +
-                                          ": sys.exit('no more')\n"
-                                          "    print(json.dumps({'edges': [{'id': e['id']} for e "
-                                          "in view['edges']]}), flush=True)\n");
+    const auto program = folder.write(
+        "mine.py",
+        test::python_program("sys.stdin.readline()\n",
+                             "view = asked\n"
+                             "    if " +
+                                 when +
+                                 ": sys.exit('no more')\n"
+                                 "    say({'edges': [{'id': e['id']} for e in view['edges']]})"));
     ExperimentSettings s = settings(QueryProtocol::path);
     s.map_spacing_m = 2;
     s.sources.command = "python3 '" + program.string() + "'";

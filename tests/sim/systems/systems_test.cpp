@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/base/json_node.h"
+#include "calib/base/json_reader.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
 #include "calib/triangulation.h"
@@ -36,6 +38,7 @@
 #include "tests/sim/study/stored_example.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_study.h"
+#include "tests/support/python_program.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -240,22 +243,18 @@ TEST(Systems, AProgramThatCannotAnswerEndsTheStudyBeforeItBegins) {
 
 /// A program in Python that gets ready and does this with the number t of each trial.
 std::string python_system(const test::TestFolder& folder, const std::string& with_trial) {
-  std::ofstream(folder / "p.py") << "import json, sys\n"
-                                    "json.loads(sys.stdin.readline())\n"
-                                    "print('{\"ready\": true}', flush=True)\n"
-                                    "for line in sys.stdin:\n"
-                                    "  t = json.loads(line)['trial']\n"
-                                 << with_trial;
+  std::ofstream(folder / "p.py") << test::python_program("json.loads(sys.stdin.readline())\n",
+                                                         "t = asked['trial']\n" + with_trial);
   return "python3 '" + (folder / "p.py").string() + "'";
 }
 
 TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
   const test::TestFolder folder("systems");
-  const Study study = system_study(
-      program_study(python_system(folder,
-                                  "  if t % 10 == 3: sys.exit('no parcel')\n"
-                                  "  if t % 10 == 4: print('{\"answered\": false}', flush=True)\n"
-                                  "  else: print('{\"error\": 0.01}', flush=True)\n")));
+  const Study study =
+      system_study(program_study(python_system(folder,
+                                               "    if t % 10 == 3: sys.exit('no parcel')\n"
+                                               "    if t % 10 == 4: say('{\"answered\": false}')\n"
+                                               "    else: say('{\"error\": 0.01}')\n")));
   run_study(study, {folder / "a", 2, {}, {}, {}});
   const CellSummary summary = study_results(study, folder / "a").cells[0].summary;
   EXPECT_EQ(summary.trials, 30);
@@ -270,7 +269,7 @@ TEST(Systems, ATrialThatAProgramSpoilsIsCounted) {
 TEST(Systems, ATrialOfAProgramKnowsNothingOfOthers) {
   const test::TestFolder folder("systems");
   const Study study = system_study(program_study(python_system(
-      folder, "  print('{\"error\": 0.01}' if t < 4 or t > 7 else 'none', flush=True)\n")));
+      folder, "    say('{\"error\": 0.01}') if t < 4 or t > 7 else print('none', flush=True)\n")));
   const auto system = system_of_cell(study);
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     EXPECT_EQ(system->run(trial).answered(), trial < 4 || trial > 7) << trial;
@@ -302,7 +301,10 @@ std::string answer_complaint(const std::string& line) {
   system.name = "program";
   system.measured_names = {"off_m"};
   TrialResult trial;
-  return test::error_message([&] { parse_system_answer(line, system, trial); });
+  return test::error_message([&] {
+    const auto json = vernier::internal::parse_json(line, "answer");
+    parse_system_answer({json, "answer:"}, system, trial);
+  });
 }
 
 TEST(Systems, AnAnswerOfAProgramIsChecked) {

@@ -35,8 +35,12 @@ std::string tum_text(std::span<const TimedPose> trajectory);
 struct OdometryPath {
   std::vector<Pose> T_first_camera;              ///< one per moment
   std::vector<std::optional<MotionStep>> steps;  ///< between them; none where it was not found
-  Eigen::Matrix<double, 6, 6> end_covariance;    ///< of the last pose, from corner noise
-  Eigen::Matrix<double, 6, Eigen::Dynamic> end_by_rig;  ///< of the last pose: 6 x parameters
+  /// Of the last pose in the tangent of retract() (rad, m), from the noise of the corners, which
+  /// successive steps share; NaN if a step was not found.
+  Eigen::Matrix<double, 6, 6> end_covariance;
+  /// Derivative of the last pose by the rig's parameters: 6 x parameters; NaN if a step was not
+  /// found.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> end_by_rig;
 };
 
 /// Links the corners of successive moments and chains their steps. Where a step is not found, the

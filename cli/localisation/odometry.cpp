@@ -66,9 +66,7 @@ OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& 
   OdometryPath path = odometry_path(drive.rig, drive.moments, {}, options);
   figures.cpu_s += cpu_seconds() - start;
   ++figures.drives;
-  // How far the repeated motion of a step that was not found errs is not known.
-  const bool whole = std::all_of(path.steps.begin(), path.steps.end(),
-                                 [](const auto& step) { return step.has_value(); });
+  const bool whole = path.end_covariance.allFinite();
   if (whole) figures.noise_sd_m.push_back(position_sd_m(path.end_covariance));
   if (whole && drive.calibration.size() > 0) {
     figures.calibration_sd_m.push_back(

@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "localise/odometry/estimated_step.h"
 #include "localise/odometry/step_consensus.h"
 #include "localise/odometry/step_refinement.h"
 #include "localise/place.h"
@@ -55,13 +57,24 @@ void check(const Rig& rig,
   }
 }
 
+Eigen::Matrix<double, 6, 6> covariance_of(const std::vector<CornerInfluence>& influences) {
+  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const CornerInfluence& of : influences) {
+    sum += of.from * of.from.transpose() + of.to * of.to.transpose() +
+           of.residual * of.residual.transpose();
+  }
+  return 0.5 * (sum + sum.transpose());
+}
+
 }  // namespace
 
-std::optional<MotionStep> estimate_step(const Rig& rig,
-                                        std::span<const StereoCorner> from,
-                                        std::span<const StereoCorner> to,
-                                        std::span<const CornerLink> links,
-                                        const StepOptions& options) {
+namespace internal {
+
+std::optional<EstimatedStep> estimated_step(const Rig& rig,
+                                            std::span<const StereoCorner> from,
+                                            std::span<const StereoCorner> to,
+                                            std::span<const CornerLink> links,
+                                            const StepOptions& options) {
   check(rig, from, to, links, options);
   const std::vector<TriangulatedLink> placed = triangulated_links(rig, from, to, links, options);
   const std::optional<Pose> agreed = consensus(rig, placed, options);
@@ -73,17 +86,31 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(refined.information);
   if (information.info() != Eigen::Success || !information.isPositive()) return std::nullopt;
 
-  MotionStep step;
+  EstimatedStep estimated;
+  MotionStep& step = estimated.step;
   step.T_from_to = refined.T_from_to;
   step.links = static_cast<int>(links.size());
   for (const int i : chosen) step.inliers.push_back(placed[static_cast<std::size_t>(i)].link);
   step.chi2 = refined.total_chi2();
   step.dof = 5 * static_cast<int>(chosen.size()) - 6;
   const std::vector<LinkedCorner> agreeing = corners_at(placed, chosen);
-  step.covariance = step_covariance(rig, agreeing, refined);
+  estimated.influences = corner_influences(rig, agreeing, refined);
+  step.covariance = covariance_of(estimated.influences);
   if (!step.covariance.allFinite()) return std::nullopt;
   if (options.with_rig) step.by_rig = step_by_rig(rig, agreeing, refined);
-  return step;
+  return estimated;
+}
+
+}  // namespace internal
+
+std::optional<MotionStep> estimate_step(const Rig& rig,
+                                        std::span<const StereoCorner> from,
+                                        std::span<const StereoCorner> to,
+                                        std::span<const CornerLink> links,
+                                        const StepOptions& options) {
+  std::optional<EstimatedStep> estimated = estimated_step(rig, from, to, links, options);
+  if (!estimated) return std::nullopt;
+  return std::move(estimated->step);
 }
 
 }  // namespace vernier::localise

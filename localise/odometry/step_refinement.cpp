@@ -201,29 +201,39 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
   return refined;
 }
 
-Matrix6d step_covariance(const Rig& rig,
-                         const std::vector<LinkedCorner>& corners,
-                         const RefinedStep& step) {
+std::vector<CornerInfluence> corner_influences(const Rig& rig,
+                                               const std::vector<LinkedCorner>& corners,
+                                               const RefinedStep& step) {
   constexpr double prior_corners = 20;            // n₀
   constexpr double least_variance_factor = 1e-6;  // of exact corners, whose residuals are rounding
   const auto n = static_cast<double>(corners.size());
   const double factor = std::max(step.total_chi2() / (5 * n - 6), least_variance_factor);
-  const Matrix6d& H = step.information;
-  const Matrix6d inverse = solve_symmetric(H, Eigen::MatrixXd(Matrix6d::Identity()));
-  Matrix6d scatter = Matrix6d::Zero();
+  const double as_stated = prior_corners / (prior_corners + n), as_seen = 1 - as_stated;
+  const Matrix6d inverse = solve_symmetric(step.information, Eigen::MatrixXd(Matrix6d::Identity()));
+  std::vector<CornerInfluence> influences;
+  influences.reserve(corners.size());
   StepProjectors projectors({rig, rig});
   for (std::size_t i = 0; i < corners.size(); ++i) {
+    CornerInfluence& of = influences.emplace_back();
+    of.from.setZero();
+    of.to.setZero();
+    of.residual.setZero();
     LinearisedCorner c;
     if (!linearise(projectors, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
     const Matrix6d M = in_motion(c, c.by_motion);
     const Matrix6d others = Matrix6d::Identity() - M * inverse;
     const Vector6d g = others.partialPivLu().solve(in_motion(c, c.residual));
     // A corner without which the motion is not determined has no residual to judge it by.
-    scatter += g.allFinite() ? Matrix6d(g * g.transpose()) : Matrix6d(factor * M);
+    const bool judged = g.allFinite();
+    if (judged) of.residual = std::sqrt(as_seen) * inverse * g;
+    const Eigen::Matrix<double, 6, 8> by_noise =
+        inverse *
+        in_motion(c, Eigen::Matrix<double, 8, 8>(Eigen::Matrix<double, 8, 8>::Identity()));
+    const double sd = std::sqrt((judged ? as_stated : 1) * factor);
+    of.from = sd * by_noise.leftCols<4>();
+    of.to = sd * by_noise.rightCols<4>();
   }
-  const Matrix6d middle = (prior_corners * factor * H + n * scatter) / (prior_corners + n);
-  const Matrix6d covariance = inverse * middle * inverse;
-  return 0.5 * (covariance + covariance.transpose());
+  return influences;
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,

@@ -46,7 +46,14 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
                                        int max_iterations,
                                        const FloorBasis* within = nullptr);
 
-/// Covariance of a refined motion in the tangent of retract() (rad, m), from the residuals:
+/// What the noise of a corner does to a refined motion, in the tangent of retract() (rad, m).
+struct CornerInfluence {
+  /// Of its pixels at either moment, as it is stated but for χ²/dof: the square is its covariance.
+  Eigen::Matrix<double, 6, 4> from, to;
+  Eigen::Matrix<double, 6, 1> residual;  ///< as its residuals show it
+};
+
+/// The parts of the covariance of a refined motion, Σ from fromᵀ + to toᵀ + residual residualᵀ:
 ///
 ///     C = H⁻¹ (n₀ χ²/dof H + n Σ g gᵀ) H⁻¹ / (n₀ + n),   g = (I − M H⁻¹)⁻¹ Aᵀ Q r
 ///
@@ -56,9 +63,10 @@ std::optional<RefinedStep> refine_step(const StepRigs& rigs,
 /// corner is made of, while χ²/dof, the first, holds only if that is as stated but for one factor.
 /// A motion sideways is as uncertain as what shifts in both eyes alike, which the residuals hardly
 /// show. n₀ = 20 corners' worth of the first keep the second sound for few corners.
-Eigen::Matrix<double, 6, 6> step_covariance(const Rig& rig,
-                                            const std::vector<LinkedCorner>& corners,
-                                            const RefinedStep& step);
+/// One per corner.
+std::vector<CornerInfluence> corner_influences(const Rig& rig,
+                                               const std::vector<LinkedCorner>& corners,
+                                               const RefinedStep& step);
 
 /// Derivative of the minimum by the rig's parameters, with the measurements fixed: by the implicit
 /// function theorem, to first order in the residuals.

@@ -6,14 +6,19 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/odometry.h"
+#include "localise/odometry/estimated_step.h"
+#include "localise/odometry/path_covariance.h"
 #include "localise/odometry/step_consensus.h"
 #include "localise/place.h"
 
@@ -21,20 +26,9 @@ namespace vernier::localise {
 
 namespace {
 
-using Eigen::Matrix3d;
+using internal::EstimatedStep;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-/// Derivatives of a product of poses T = A B in the tangent of retract().
-struct ProductDerivatives {
-  Matrix6d by_first = Matrix6d::Identity(), by_second = Matrix6d::Zero();
-
-  ProductDerivatives(const Pose& A, const Pose& B) {
-    by_first.bottomLeftCorner<3, 3>() = -hat(A.R * B.t);
-    by_second.topLeftCorner<3, 3>() = A.R;
-    by_second.bottomRightCorner<3, 3>() = A.R;
-  }
-};
 
 void check_together(std::span<const Pose> estimate, std::span<const Pose> truth) {
   if (estimate.size() == truth.size() && truth.size() >= 2) return;
@@ -47,28 +41,28 @@ void check_together(std::span<const Pose> estimate, std::span<const Pose> truth)
 /// The step between two moments, from corners that look alike nowhere else, or else from those near
 /// where `expected` has them. Once found, the step itself says which of those that look alike
 /// belong together.
-std::optional<MotionStep> linked_step(const Rig& rig,
-                                      std::span<const StereoCorner> from,
-                                      std::span<const StereoCorner> to,
-                                      const Pose& expected,
-                                      const CornerLinkOptions& linking,
-                                      const StepOptions& options) {
+std::optional<EstimatedStep> linked_step(const Rig& rig,
+                                         std::span<const StereoCorner> from,
+                                         std::span<const StereoCorner> to,
+                                         const Pose& expected,
+                                         const CornerLinkOptions& linking,
+                                         const StepOptions& options) {
   constexpr std::array search_windows_px{8.0, 16.0, 32.0, 64.0};
   constexpr double found_window_px = 4;
   const auto near = [&](const Pose& T_from_to, double window_px) {
-    return estimate_step(rig, from, to,
-                         link_corners_near(rig, from, to, T_from_to, window_px, linking), options);
+    return estimated_step(rig, from, to,
+                          link_corners_near(rig, from, to, T_from_to, window_px, linking), options);
   };
   const std::vector<CornerLink> unguided = link_corners(from, to, linking);
-  auto found = estimate_step(rig, from, to, unguided, options);
+  auto found = estimated_step(rig, from, to, unguided, options);
   for (const double window_px : search_windows_px) {
     if (found) break;
     found = near(expected, window_px);
   }
   if (!found) return std::nullopt;
-  auto again = near(found->T_from_to, found_window_px);
-  if (again && again->inliers.size() >= found->inliers.size()) found = std::move(again);
-  found->other_motion = internal::other_motion(rig, from, to, unguided, *found, options);
+  auto again = near(found->step.T_from_to, found_window_px);
+  if (again && again->step.inliers.size() >= found->step.inliers.size()) found = std::move(again);
+  found->step.other_motion = internal::other_motion(rig, from, to, unguided, found->step, options);
   return found;
 }
 
@@ -84,21 +78,30 @@ OdometryPath odometry_path(const Rig& rig,
   if (moments.empty()) return path;
   path.T_first_camera.push_back({});
   Pose last_motion;
+  internal::PathCovariance noise;
   for (std::size_t i = 1; i < moments.size(); ++i) {
     StepOptions of_step = options;
     of_step.step = static_cast<std::uint32_t>(i);
-    path.steps.push_back(
-        linked_step(rig, moments[i - 1], moments[i], last_motion, linking, of_step));
+    std::optional<EstimatedStep> found =
+        linked_step(rig, moments[i - 1], moments[i], last_motion, linking, of_step);
     const Pose& T = path.T_first_camera.back();
-    if (const auto& step = path.steps.back()) {
-      last_motion = step->T_from_to;
-      const ProductDerivatives d(T, last_motion);
-      path.end_covariance = d.by_first * path.end_covariance * d.by_first.transpose() +
-                            d.by_second * step->covariance * d.by_second.transpose();
+    path.steps.emplace_back();
+    if (found) {
+      last_motion = found->step.T_from_to;
+      const internal::ProductDerivatives d(T, last_motion);
+      noise.add(d, found->step.inliers, found->influences);
       path.end_by_rig = d.by_first * path.end_by_rig;
-      if (step->by_rig.size() > 0) path.end_by_rig += d.by_second * step->by_rig;
+      if (found->step.by_rig.size() > 0) path.end_by_rig += d.by_second * found->step.by_rig;
+      path.steps.back() = std::move(found->step);
     }
     path.T_first_camera.push_back(T * last_motion);
+  }
+  path.end_covariance = noise.covariance();
+  const bool whole = std::all_of(path.steps.begin(), path.steps.end(),
+                                 [](const auto& step) { return step.has_value(); });
+  if (!whole) {
+    path.end_covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+    path.end_by_rig.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return path;
 }

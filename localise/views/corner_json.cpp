@@ -20,6 +20,7 @@
 
 namespace vernier::localise::internal {
 
+using vernier::internal::all_within;
 using vernier::internal::JsonNode;
 
 namespace {

@@ -124,7 +124,7 @@ TEST(ProgramLocaliser, SurvivesItsProgram) {
       {"time.sleep(60)", "no answer within"},
       {"print('hello', flush=True)", "nonsense"},
       {"print(" + good + ", flush=True)", "has not the number of its question"},
-      {"say('{\"question\": 2, \"status\": \"tie\"}')", "is for question '2' where 1 was asked"},
+      {"say('{\"question\": 2, \"status\": \"tie\"}')", "is for question \"2\" where 1 was asked"},
       {"say('{\"question\": [1], \"status\": \"tie\"}')", "is for question"},
       {"say('{\"status\": \"lost\"}')", "no status"},
       {"say('{\"status\": \"answered\"}')", "pose"},

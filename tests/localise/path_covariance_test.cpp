@@ -42,7 +42,9 @@ std::vector<std::vector<StereoCorner>> PathDrive::moments(std::uint32_t trial) c
   std::vector<Vector3d> x;
   for (int k = 0; k < points; ++k) {
     const double z = places.uniform(2, 8);
-    x.emplace_back(z * places.uniform(-0.5, 0.5), z * places.uniform(-0.35, 0.35), z);
+    const double across = z * places.uniform(-0.5, 0.5);
+    const double down = z * places.uniform(-0.35, 0.35);
+    x.emplace_back(across, down, z);
   }
   std::vector<std::vector<StereoCorner>> all;
   for (int i = 0; i <= steps; ++i) {

@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     for (const double lower_px : {0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0}) {
       RectifiedPair moved = with_shifted_rows(pair, truth, lower_px).pair;
       const VerticalField field = vertical_field(moved, file.range);
-      if (repaired) moved.right = corrected_right(moved.right, field);
+      if (repaired) correct_right(field, moved);
       const auto found = edge_matcher().match(moved, edges, file.range);
       const MatcherScore score = evaluate(edges, found, at_edges, pair.left.width_px);
       fmt::print("{:<14} {:6.2f} {:9.2f} {:6} {:8.3f} {:7.3f} {:13.3f} {:6.2f} {:7.3f}\n",

@@ -28,7 +28,16 @@ GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* rema
 /// Two images in which corresponding rows show the same epipolar plane.
 struct RectifiedPair {
   GreyLevels left, right;
+  /// White noise of the images before they were resampled, grey levels of a pixel of these: it
+  /// moves edges and disparities, while single pixels, whose neighbours err alike, show less of it.
+  /// 0: they were not resampled, as far as is known.
+  double left_noise = 0, right_noise = 0;
 };
+
+/// The pair with its images exchanged.
+inline RectifiedPair exchanged(const RectifiedPair& pair) {
+  return {pair.right, pair.left, pair.right_noise, pair.left_noise};
+}
 
 /// Search range of disparities u_left − u_right, both ends included.
 struct DisparityRange {

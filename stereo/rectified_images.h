@@ -27,9 +27,6 @@ struct ValidPixels {
 struct RectifiedImages {
   RectifiedPair pair;
   ValidPixels left_valid, right_valid;
-  /// White noise of the raw images, grey levels (stereo/image/image_noise.h): what moves edges of
-  /// the rectified ones (CannyOptions::noise), which show less of it.
-  double left_noise = 0, right_noise = 0;
 };
 
 /// Rectifies the images of a rig. A rectified pixel's ray is rotated to its camera and projected

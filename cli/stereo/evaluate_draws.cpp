@@ -159,9 +159,9 @@ DrawTrial run_trial(WarpedPair warped,
 /// The pair with its own vertical misalignment corrected, so that only sampled errors remain.
 RectifiedPair without_own_field(const Scene& scene) {
   const VerticalField own = vertical_field(scene.pair, scene.file.range);
-  return {scene.pair.left, own.significant && !own.unrectified
-                               ? corrected_right(scene.pair.right, own)
-                               : scene.pair.right};
+  RectifiedPair pair = scene.pair;
+  if (!own.unrectified) correct_right(own, pair);
+  return pair;
 }
 
 /// NaN for an empty list.

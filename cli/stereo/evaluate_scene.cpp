@@ -47,8 +47,7 @@ double cpu_ms() {
 /// why they do not match.
 void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
   if (field.known || !field.unrectified || scene.out_of_range) return;
-  const VerticalField other =
-      vertical_field(RectifiedPair{scene.pair.right, scene.pair.left}, scene.file.range);
+  const VerticalField other = vertical_field(exchanged(scene.pair), scene.file.range);
   if (!other.known || other.unrectified) return;
   throw Error(
       scene.file.left.string(),
@@ -68,7 +67,7 @@ void repair(Scene& scene, bool wanted, Session& session) {
     session.add_trust_warning(
         scene.file.name + ": the rows are not aligned; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
-    scene.pair.right = corrected_right(scene.pair.right, field);
+    correct_right(field, scene.pair);
   } else if (field.misaligned) {
     session.add_trust_warning(scene.file.name + ": " + misalignment(field) +
                               "--repair corrects this");
@@ -184,10 +183,7 @@ Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOpti
 void check_not_swapped(const Matcher& matcher, const Scene& scene, const Run& run) {
   if (scene.out_of_range) return;
   check_not_swapped(
-      matcher, run.found, scene.file.range,
-      [&] {
-        return RectifiedPair{scene.pair.right, scene.pair.left};
-      },
+      matcher, run.found, scene.file.range, [&] { return exchanged(scene.pair); },
       scene.file.left.string());
 }
 

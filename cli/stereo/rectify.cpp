@@ -303,13 +303,13 @@ void run(RectifyArguments options, Session& session) {
   require_side_by_side(rig, options.rig);
   const RectifiedGeometry wanted =
       with_errors_of(options.rig, [&] { return rectified_geometry(rig, options.geometry); });
-  const auto [left, right] =
+  const RectifiedPair raw =
       read_camera_images(rig, options.rig, options.left, options.right, session);
-  Rectified rectified = rectify(rig, wanted, left, right, options);
-  check_alignment(rectified, rig, left, right, options, session);
+  Rectified rectified = rectify(rig, wanted, raw.left, raw.right, options);
+  check_alignment(rectified, rig, raw.left, raw.right, options, session);
   auto& [geometry, images, field] = rectified;
   const bool repaired = options.repair && field.significant;
-  if (repaired) images.pair.right = corrected_right(images.pair.right, field);
+  if (repaired) correct_right(field, images.pair);
   std::string words = describe(field);
   if (options.repair) words += repaired ? "; repaired" : "; no repair needed";
 

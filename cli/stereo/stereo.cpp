@@ -105,7 +105,7 @@ EdgesMatched edge_figures(const StereoResult& result,
 /// The edges of the left image at valid pixels.
 std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& file) {
   CannyOptions canny;
-  canny.noise = input.left_noise;
+  canny.noise = input.pair.left_noise;
   std::vector<EdgePoint> edges = canny_edges(input.pair.left, canny);
   if (input.left_valid) {
     std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });

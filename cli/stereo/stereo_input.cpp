@@ -66,7 +66,6 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
   input.pair = std::move(images.pair);
   input.left_valid = std::move(images.left_valid);
   input.right_valid = std::move(images.right_valid);
-  input.left_noise = images.left_noise;
   if (rig.cameras[0].size_px != rig.cameras[1].size_px) return;
   input.exchanged = [rig, geometry, raw, threads = o.threads] {
     return rectified_images(rig, geometry, raw.right, raw.left, threads).pair;
@@ -136,7 +135,7 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
   take_cameras(o, input, session);
   reach_infinity(o, input, session);
   input.field = vertical_field(input.pair, input.range);
-  input.exchanged = [other = RectifiedPair{input.pair.right, input.pair.left}] { return other; };
+  input.exchanged = [other = exchanged(input.pair)] { return other; };
 }
 
 void repair_rows(bool wanted, StereoInput& input, Session& session) {
@@ -146,7 +145,7 @@ void repair_rows(bool wanted, StereoInput& input, Session& session) {
   if (field.known && (wanted || field.significant)) session.info(describe(field));
   if (!field.significant) return;
   if (wanted) {
-    input.pair.right = corrected_right(input.pair.right, field);
+    correct_right(field, input.pair);
     input.repaired = true;
   } else if (!field.misaligned) {
     session.warn("the rows are slightly misaligned; --repair corrects this");

@@ -32,7 +32,6 @@ struct StereoInput {
   RectifiedPair pair;
   /// Of raw images: pixels with a source.
   std::optional<ValidPixels> left_valid, right_valid;
-  double left_noise = 0;                      ///< of the raw image, grey levels; 0: not known
   std::optional<RectifiedGeometry> geometry;  ///< empty: disparities only
   std::optional<RigEstimate> estimate;        ///< the rig of this geometry
   double offset_px = 0;                       ///< added to image disparities to get the geometry's

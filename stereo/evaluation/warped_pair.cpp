@@ -175,7 +175,7 @@ WarpedPair with_shifted_rows(const RectifiedPair& pair, const StereoTruth& truth
 
 void repair(WarpedPair& warped, const VerticalField& field) {
   if (!field.significant) return;
-  warped.pair.right = corrected_right(warped.pair.right, field);
+  correct_right(field, warped.pair);
   const auto width = static_cast<std::size_t>(warped.vertical_px.width_px);
   for (std::size_t i = 0; i < warped.vertical_px.values.size(); ++i) {
     const double right_x = static_cast<double>(i % width) - warped.truth.disparity.values[i];

@@ -184,11 +184,15 @@ void judge_fit(const Normal& J2,
   const double mean_square = std::max(residual / (pixels - unknowns),
                                       options.noise_left * options.noise_left * gain * gain +
                                           options.noise_right * options.noise_right);
+  const double edge_share = std::max(
+      0.2, 1 - (pixels - unknowns) * static_cast<double>(options.slope_variance) * inverse);
   const double left_power = J2(3, 3) - J2(3, 4) * J2(3, 4) / pixels,
                right_power = K.squares - K.sum * K.sum / pixels,
                both = K.with_left[3] - J2(3, 4) * K.sum / pixels;
-  result.sigma_px =
-      static_cast<float>(stretch * std::sqrt(std::max(0.0, mean_square * inverse)) / gain);
+  const double sigma =
+      stretch * std::sqrt(std::max(0.0, mean_square * inverse)) / (gain * edge_share);
+  const double most = std::hypot(options.start_sigma_px, options.max_shift_px / std::sqrt(3.0));
+  result.sigma_px = static_cast<float>(std::min(sigma, most));
   result.score = static_cast<float>(both / std::sqrt(std::max(1e-9, left_power * right_power)));
 }
 

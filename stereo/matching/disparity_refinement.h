@@ -27,9 +27,11 @@ struct RefinedDisparity {
 };
 
 struct RefinementOptions {
-  float noise_left = 1, noise_right = 1;  ///< standard deviation, grey levels
-  float max_shift_px = 1;                 ///< maximum distance from the start
-  float stretch_sigma = 0.3f;  ///< expected deviation of stretch and shear from their start
+  float noise_left = 1, noise_right = 1;  ///< white, standard deviation, grey levels
+  float slope_variance = 0.5f;  ///< of a central difference of the left image, from its noise
+  float max_shift_px = 1;       ///< maximum distance from the start …
+  float start_sigma_px = 0.5f;  ///< … which has this standard deviation
+  float stretch_sigma = 0.3f;   ///< expected deviation of stretch and shear from their start
   int iterations = 6;
 };
 
@@ -43,7 +45,13 @@ struct RefinementOptions {
 /// near the start. Iterations are inverse compositional (Baker and Matthews 2004): gradients of the
 /// left patch only; they stop after a step below 0.05 px, which leaves about a tenth of it. With N
 /// the normal matrix, the variance of the disparity is r² m N⁻¹₀₀ / α², m the mean squared
-/// residual, at least (noise_left² α² + noise_right²).
+/// residual, at least (noise_left² α² + noise_right²). The gradients have noise themselves, of
+/// which N⁻¹₀₀ takes the squares for information. The share of it that is the edge's is
+///
+///     q = 1 − 58 v N⁻¹₀₀,   at least 0.2
+///
+/// with v the variance of a gradient, and the deviation is divided by q. It is at most that of a
+/// place between −max_shift and max_shift of the start.
 class DisparityRefiner {
  public:
   DisparityRefiner(const GreyLevels& left,

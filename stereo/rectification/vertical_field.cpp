@@ -10,11 +10,13 @@
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
 #include "stereo/corners/harris_corners.h"
 #include "stereo/grey_levels.h"
+#include "stereo/image/image_noise.h"
 #include "stereo/image/matrix_of.h"
 #include "stereo/image/patch_alignment.h"
 #include "stereo/image/patch_search.h"
@@ -294,6 +296,13 @@ GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field) 
     }
   }
   return repaired;
+}
+
+void correct_right(const VerticalField& field, RectifiedPair& pair) {
+  if (!field.significant) return;
+  GreyLevels corrected = corrected_right(pair.right, field);
+  if (pair.right_noise == 0) pair.right_noise = image_noise(matrix_of(pair.right));
+  pair.right = std::move(corrected);
 }
 
 }  // namespace vernier::stereo::internal

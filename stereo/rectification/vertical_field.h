@@ -86,4 +86,7 @@ std::string describe(const VerticalField& field);
 /// is not significant. Throws Error for an image of another size than the field's.
 GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field);
 
+/// The same in a pair, which keeps the noise that the right image had before.
+void correct_right(const VerticalField& field, RectifiedPair& pair);
+
 }  // namespace vernier::stereo::internal

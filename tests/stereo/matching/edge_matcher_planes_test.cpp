@@ -86,8 +86,10 @@ TEST(EdgeMatcher, IsExactOnAPlaneThatFacesTheCameras) {
   EXPECT_LT(s.bad_1, 0.002);
   EXPECT_LT(s.rms_px, 0.1);
   // Some 15000 errors, related within patches of 63 pixels: a thousand independent ones, so that
-  // the root mean square has a standard deviation of 0.02; the rest is the method's.
-  EXPECT_NEAR(s.z, 1, 0.1);
+  // the root mean square has a standard deviation of 0.02; the rest is the method's: in texture,
+  // the noise of gradients is taken for a little more than it is.
+  EXPECT_GT(s.z, 0.85);
+  EXPECT_LT(s.z, 1.1);
 }
 
 TEST(EdgeMatcher, FollowsSlantedPlanes) {

@@ -31,6 +31,7 @@
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/external_matcher.h"
+#include "stereo/matching/range_probe.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
 
@@ -38,8 +39,8 @@ namespace vernier::cli {
 namespace {
 
 constexpr double min_density = 0.2;    // warn if a smaller fraction of the edges is matched
-constexpr double many_at_top = 0.02;   // of the range: it may end too early …
-constexpr double half = 0.5;           // … and does where fewer edges are matched
+constexpr double some_outside = 0.01;  // warn if so many edges match outside the range …
+constexpr double many_outside = 0.05;  // … and do not trust the result
 constexpr double max_uncertain = 0.5;  // warn if a larger fraction of segments has uncertain depth
 
 struct StereoArguments {
@@ -81,23 +82,37 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
   return f;
 }
 
-/// Number of edges to match and of edges matched, of these in the top tenth of the range.
+/// Number of edges to match and of edges matched.
 struct EdgesMatched {
-  int asked = 0, matched = 0, at_top = 0;
+  int asked = 0, matched = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
-  double top_share() const { return static_cast<double>(at_top) / std::max(1, matched); }
 };
 
-EdgesMatched edge_figures(const StereoResult& result,
-                          const DisparityRange& range,
-                          double min_angle_rad) {
-  const double top_px = range.max_px - 0.1 * (range.max_px - range.min_px);
+/// What matches outside the range has a wrong match inside it, of which nothing else shows that.
+void check_range(const StereoInput& input, Session& session) {
+  const OutsideRange outside = outside_range(input.pair, input.range);
+  const double share = outside.below + outside.above;
+  if (share < some_outside) return;
+  const bool is_below = outside.below >= some_outside, is_above = outside.above >= some_outside;
+  std::string text = fmt::format(
+      "{:.2g} % of the edges match outside the range, {:.2g} % below {} px and {:.2g} % above {} "
+      "px, "
+      "and what they match inside it is wrong: ",
+      100 * share, 100 * outside.below, input.range.min_px, 100 * outside.above,
+      input.range.max_px);
+  if (is_below) text += fmt::format("give --min-disparity {}", outside.wider.min_px);
+  if (is_below && is_above) text += " and ";
+  if (is_above || !is_below) text += fmt::format("give --max-disparity {}", outside.wider.max_px);
+  text += ", unless a texture that repeats is matched a period too far";
+  share >= many_outside ? session.add_trust_warning(text) : session.warn(text);
+}
+
+EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
   EdgesMatched f;
   for (std::size_t i = 0; i < result.edges.size(); ++i) {
     if (std::abs(result.edges[i].normal.x()) < std::sin(min_angle_rad)) continue;
     ++f.asked;
     f.matched += result.found[i].matched();
-    f.at_top += result.found[i].disparity_px > top_px;
   }
   return f;
 }
@@ -184,12 +199,8 @@ void check_result(const StereoArguments& options,
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
-  } else if (edges.top_share() > many_at_top) {
-    const std::string text = fmt::format(
-        "{:.0f} % of the matched edges are in the top tenth of the range, and {:.0f} % have no "
-        "match: what is nearer is missing or wrong if --max-disparity {} is too small",
-        100 * edges.top_share(), 100 * (1 - edges.share()), input.range.max_px);
-    edges.share() < half ? session.add_trust_warning(text) : session.warn(text);
+  } else {
+    check_range(input, session);
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
@@ -301,8 +312,7 @@ void run(const StereoArguments& options, Session& session) {
   check_outputs(options);
   const StereoInput input = read_stereo_input(options.input, session);
   const StereoResult result = look(options, input);
-  const EdgesMatched edges =
-      edge_figures(result, input.range, options.min_angle_deg * std::numbers::pi / 180);
+  const EdgesMatched edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
   check_result(options, input, result, edges, depth, session);
 

@@ -122,23 +122,12 @@ std::vector<BlockRange> ranges_about(const StretchBlocks& from,
   return ranges;
 }
 
-GreyLevels halved(const GreyLevels& image) {
-  GreyLevels half{image.width_px / 2, image.height_px / 2, {}};
-  for (int y = 0; y < half.height_px; ++y) {
-    for (int x = 0; x < half.width_px; ++x) {
-      half.values.push_back(0.25f * (image(2 * x, 2 * y) + image(2 * x + 1, 2 * y) +
-                                     image(2 * x, 2 * y + 1) + image(2 * x + 1, 2 * y + 1)));
-    }
-  }
-  return half;
-}
-
 /// Blocks of the images at half size, unless they are too small.
 StretchBlocks coarser_blocks(const RectifiedPair& pair,
                              const std::vector<EdgePoint>& left_edges,
                              const DisparityRange& range,
                              StretchOptions options) {
-  const RectifiedPair half{halved(pair.left), halved(pair.right)};
+  const RectifiedPair half{half_size(pair.left), half_size(pair.right)};
   if (half.left.width_px < 3 * options.width_px || half.left.height_px < 3 * options.height_px) {
     return {};
   }

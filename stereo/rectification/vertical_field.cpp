@@ -16,6 +16,7 @@
 #include "calib/error.h"
 #include "stereo/corners/harris_corners.h"
 #include "stereo/grey_levels.h"
+#include "stereo/image/half_size.h"
 #include "stereo/image/image_noise.h"
 #include "stereo/image/matrix_of.h"
 #include "stereo/image/patch_alignment.h"
@@ -72,14 +73,6 @@ void check(const RectifiedPair& pair,
   }
 }
 
-/// Reduces to half size: pixel (x, y) is the mean of four and lies at (2x + 0.5, 2y + 0.5).
-cv::Mat halved(const cv::Mat& image) {
-  cv::Mat half;
-  cv::resize(image(cv::Rect(0, 0, image.cols / 2 * 2, image.rows / 2 * 2)), half, {}, 0.5, 0.5,
-             cv::INTER_AREA);
-  return half;
-}
-
 cv::Mat smoothed(const cv::Mat& image) {
   cv::Mat smooth;
   cv::GaussianBlur(image, smooth, {0, 0}, smoothing_px);
@@ -101,8 +94,8 @@ struct FieldSearch {
   int min_x, max_x, rows;  ///< half-size pixels: disparities, and rows of the band
 
   FieldSearch(const RectifiedPair& pair, const DisparityRange& range, int band_px)
-      : half_left(halved(matrix_of(pair.left))),
-        half_right(halved(matrix_of(pair.right))),
+      : half_left(half_size(matrix_of(pair.left))),
+        half_right(half_size(matrix_of(pair.right))),
         left(smoothed(matrix_of(pair.left))),
         right(smoothed(matrix_of(pair.right))),
         in_left(half_left, half_px),

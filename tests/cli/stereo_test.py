@@ -9,6 +9,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import shutil
 import struct
 import sys
@@ -180,10 +181,17 @@ class Made(Case):
         self.works(*self.arguments(), *self.values(), '-q', '--threads', 3)
         self.assertEqual(first, read())
 
-    def test_a_range_that_ends_among_the_matches_is_told(self):
-        done = self.works(*self.arguments(most=6))  # of the wall; the box is at 14
-        self.assertIn('100 % of the matched edges are in the top tenth of the range', done.stderr)
-        self.assertNotIn('top tenth', self.works(*self.arguments(most=24)).stderr)
+    def test_a_range_that_the_scene_is_not_in_is_doubted(self):
+        for options, of in ((self.arguments(most=6), '--max-disparity'),  # of the wall; the box is at 14
+                            ((*self.arguments(), '--min-disparity', 10), '--min-disparity')):
+            done = cli_test.vernier(*options, '--json')
+            self.assertEqual(done.returncode, 3, done.stderr)
+            (doubt,) = json.loads(done.stdout)['doubts']
+            self.assertIn('of the edges match outside the range', doubt)
+            wider = int(re.search(of + r' (-?[0-9]+)', doubt).group(1))
+            again = self.works(*options, of, wider) if of == '--min-disparity' else self.works(
+                *self.arguments(most=wider))
+            self.assertNotIn('outside the range', again.stderr)
 
     def test_far_scenes_are_doubted(self):
         done = cli_test.vernier(*self.arguments(), *self.values(), '--offset-px', -5.5, '--json')

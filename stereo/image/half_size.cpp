@@ -17,6 +17,8 @@ cv::Mat half_size(const cv::Mat& image) {
 }
 
 GreyLevels half_size(const GreyLevels& image) {
+  if (image.width_px < 2 || image.height_px < 2)
+    return {image.width_px / 2, image.height_px / 2, {}};
   const cv::Mat half = half_size(matrix_of(image));
   return {half.cols, half.rows, {half.begin<float>(), half.end<float>()}};
 }

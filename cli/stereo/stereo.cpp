@@ -89,10 +89,11 @@ struct EdgesMatched {
 };
 
 /// What matches outside the range has a wrong match inside it, of which nothing else shows that.
-void check_range(const StereoInput& input, Session& session) {
+/// Whether there is some.
+bool tell_outside_range(const StereoInput& input, Session& session) {
   const OutsideRange outside = outside_range(input.pair, input.range);
   const double share = outside.below + outside.above;
-  if (share < some_outside) return;
+  if (share < some_outside) return false;
   const bool is_below = outside.below >= some_outside, is_above = outside.above >= some_outside;
   std::string text = fmt::format(
       "{:.2g} % of the edges match outside the range, {:.2g} % below {} px and {:.2g} % above {} "
@@ -105,6 +106,7 @@ void check_range(const StereoInput& input, Session& session) {
   if (is_above || !is_below) text += fmt::format("give --max-disparity {}", outside.wider.max_px);
   text += ", unless a texture that repeats is matched a period too far";
   share >= many_outside ? session.add_trust_warning(text) : session.warn(text);
+  return true;
 }
 
 EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
@@ -194,13 +196,11 @@ void check_result(const StereoArguments& options,
                                    : "--repair corrects this, a calibration of today its cause"));
   } else if (!of_map.empty()) {
     session.add_trust_warning(of_map);
-  } else if (edges.share() < min_density) {
+  } else if (!tell_outside_range(input, session) && edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
-  } else {
-    check_range(input, session);
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {

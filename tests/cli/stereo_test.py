@@ -182,16 +182,16 @@ class Made(Case):
         self.assertEqual(first, read())
 
     def test_a_range_that_the_scene_is_not_in_is_doubted(self):
-        for options, of in ((self.arguments(most=6), '--max-disparity'),  # of the wall; the box is at 14
-                            ((*self.arguments(), '--min-disparity', 10), '--min-disparity')):
-            done = cli_test.vernier(*options, '--json')
+        of_range = lambda least, most: (*self.arguments(most=most), '--min-disparity', least)
+        for least, most, of in ((0, 6, '--max-disparity'),  # the wall is at 6, the box at 14
+                                (10, 24, '--min-disparity')):
+            done = cli_test.vernier(*of_range(least, most), '--json')
             self.assertEqual(done.returncode, 3, done.stderr)
             (doubt,) = json.loads(done.stdout)['doubts']
             self.assertIn('of the edges match outside the range', doubt)
             wider = int(re.search(of + r' (-?[0-9]+)', doubt).group(1))
-            again = self.works(*options, of, wider) if of == '--min-disparity' else self.works(
-                *self.arguments(most=wider))
-            self.assertNotIn('outside the range', again.stderr)
+            again = of_range(least, wider) if of == '--max-disparity' else of_range(wider, most)
+            self.assertNotIn('outside the range', self.works(*again).stderr)
 
     def test_far_scenes_are_doubted(self):
         done = cli_test.vernier(*self.arguments(), *self.values(), '--offset-px', -5.5, '--json')
@@ -343,7 +343,7 @@ class Made(Case):
 class Raw(CalibratedCase):
     def arguments(self, left='left01', right='right01'):
         return ('stereo', '--rig', self.rig, '--left', IMAGES / f'{left}.jpg', '--right',
-                IMAGES / f'{right}.jpg', '--max-disparity', 120, '-o', self.folder / 'seen')
+                IMAGES / f'{right}.jpg', '--max-disparity', 160, '-o', self.folder / 'seen')
 
     def board_corners(self):
         """(u, v, d) of the board's corners, found by vernier detect in the images that vernier

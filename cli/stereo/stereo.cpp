@@ -97,8 +97,8 @@ bool tell_outside_range(const StereoInput& input, Session& session) {
   const bool is_below = outside.below >= some_outside, is_above = outside.above >= some_outside;
   std::string text = fmt::format(
       "{:.2g} % of the edges match outside the range, {:.2g} % below {} px and {:.2g} % above {} "
-      "px, "
-      "and what they match inside it is wrong: ",
+      "px: "
+      "what they match inside it is wrong; ",
       100 * share, 100 * outside.below, input.range.min_px, 100 * outside.above,
       input.range.max_px);
   if (is_below) text += fmt::format("give --min-disparity {}", outside.wider.min_px);

@@ -75,14 +75,14 @@ Rig rectified_rig(const Rig& rig, const RectifiedGeometry& geometry);
 
 /// Position in the raw image of camera 0 or 1 of a rectified pixel, inside the image or not. Does
 /// not invert the lens distortion. Returns nullopt behind the camera or beyond the fold of its
-/// distortion.
+/// distortion. Throws Error for another camera.
 std::optional<Eigen::Vector2d> raw_pixel(const Rig& rig,
                                          const RectifiedGeometry& geometry,
                                          int camera,
                                          const Eigen::Vector2d& rectified_px);
 
 /// The inverse. Returns nullopt if the raw pixel cannot be unprojected or is not in front of the
-/// rectified camera.
+/// rectified camera. Throws Error for another camera.
 std::optional<Eigen::Vector2d> rectified_pixel(const Rig& rig,
                                                const RectifiedGeometry& geometry,
                                                int camera,

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <string>
 
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/rig.h"
 #include "stereo/rectification.h"
 
@@ -42,8 +44,16 @@ const Eigen::Matrix3d& turn_of(const RectifiedGeometry& geometry, int camera) {
   return camera == 0 ? geometry.turn.R_rectified_left : geometry.turn.R_rectified_right;
 }
 
+const Camera& camera_of_pair(const Rig& rig, int camera) {
+  if ((camera == 0 || camera == 1) && rig.cameras.size() > static_cast<std::size_t>(camera)) {
+    return rig.cameras[static_cast<std::size_t>(camera)];
+  }
+  throw Error("rectification", "the pair has no camera " + std::to_string(camera),
+              "give 0 for the left one or 1 for the right one");
+}
+
 RawPixels::RawPixels(const Rig& rig, const RectifiedGeometry& geometry, int camera)
-    : camera_(rig.cameras.at(static_cast<std::size_t>(camera))),
+    : camera_(camera_of_pair(rig, camera)),
       R_camera_rectified_(turn_of(geometry, camera).transpose()),
       f_px_(geometry.f_px),
       centre_px_(geometry.centre_px),

@@ -11,6 +11,9 @@
 
 namespace vernier::stereo::internal {
 
+/// Camera 0 or 1 of the pair. Throws Error for another.
+const Camera& camera_of_pair(const Rig& rig, int camera);
+
 /// The rotation of camera 0 or 1 to the rectified ones.
 const Eigen::Matrix3d& turn_of(const RectifiedGeometry& geometry, int camera);
 

@@ -172,7 +172,7 @@ std::optional<Eigen::Vector2d> rectified_pixel(const Rig& rig,
                                                const RectifiedGeometry& geometry,
                                                int camera,
                                                const Eigen::Vector2d& raw_px) {
-  const auto ray = try_unproject(rig.cameras.at(static_cast<std::size_t>(camera)), raw_px);
+  const auto ray = try_unproject(camera_of_pair(rig, camera), raw_px);
   if (!ray) return std::nullopt;
   const Eigen::Vector3d x = turn_of(geometry, camera) * *ray;
   if (!(x.z() > 0)) return std::nullopt;

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -58,6 +61,20 @@ TEST(Rectification, NoBaselineIsRefused) {
   Rig rig = test::stereo_rig();
   rig.T_camera_first[1].t.setZero();
   EXPECT_THROW(rectification(rig), Error);
+}
+
+TEST(Rectification, PixelsOfACameraThatIsNotThereAreRefused) {
+  const Rig rig = test::stereo_rig();
+  const RectifiedGeometry geometry = rectified_geometry(rig);
+  const std::string remedy = "; give 0 for the left one or 1 for the right one";
+  EXPECT_EQ(test::error_message([&] {
+              rectified_pixel(rig, geometry, 3, {1, 2});
+            }),
+            "rectification: the pair has no camera 3" + remedy);
+  EXPECT_EQ(test::error_message([&] {
+              raw_pixel(rig, geometry, -1, {1, 2});
+            }),
+            "rectification: the pair has no camera -1" + remedy);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ std::vector<std::string> parameter_names(const Rig& rig);
 int parameter_count(const Rig& rig);
 
 /// Values in the order of the names; a rotation as its rotation vector. Throws Error if the number
-/// of a camera's parameters is not that of its model.
+/// of a camera's parameters is not that of its model, or of poses not that of cameras.
 Eigen::VectorXd parameters(const Rig& rig);
 
 /// The rig moved by `delta` in its tangent: intrinsics add, a rotation becomes exp([w]x) R (left
@@ -36,10 +36,10 @@ Eigen::VectorXd parameters(const Rig& rig);
 /// if the size of `delta` is not the number of parameters, and as parameters() does.
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
 
-/// The delta with retract(from, delta) = to.
+/// The delta with retract(from, delta) = to. Throws Error for other cameras, and as parameters().
 Eigen::VectorXd difference(const Rig& to, const Rig& from);
 
-/// Index of the first intrinsic parameter of a camera, and of its pose (camera >= 1).
+/// First index of a camera's intrinsics, and of its pose (camera >= 1). Throws Error for others.
 int intrinsics_index(const Rig& rig, int camera);
 int pose_index(const Rig& rig, int camera);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -17,13 +18,35 @@
 
 namespace vernier {
 
+namespace {
+
+/// Throws Error unless least <= camera <= number of cameras, which stands for the end.
+void check_index(const Rig& rig, int camera, int least) {
+  if (camera >= least && camera <= static_cast<int>(rig.cameras.size())) return;
+  throw Error("rig", fmt::format("no such camera: {} of {}", camera, rig.cameras.size()),
+              least == 0 ? "count from 0" : "count from 0; the first camera has no pose");
+}
+
+/// Throws Error unless every camera has a pose, and the parameters of its model.
+void check_complete(const Rig& rig) {
+  for (const Camera& camera : rig.cameras) check_parameters(camera);
+  if (rig.cameras.size() <= 1 || rig.T_camera_first.size() == rig.cameras.size()) return;
+  throw Error("rig",
+              fmt::format("{} poses for {} cameras", rig.T_camera_first.size(), rig.cameras.size()),
+              "give one a camera, the first the identity");
+}
+
+}  // namespace
+
 int intrinsics_index(const Rig& rig, int camera) {
+  check_index(rig, camera, 0);
   int index = 0;
   for (int i = 0; i < camera; ++i) index += parameter_count(rig.cameras[i].model);
   return index;
 }
 
 int pose_index(const Rig& rig, int camera) {
+  check_index(rig, camera, 1);
   return intrinsics_index(rig, static_cast<int>(rig.cameras.size())) + 6 * (camera - 1);
 }
 
@@ -48,10 +71,10 @@ std::vector<std::string> parameter_names(const Rig& rig) {
 }
 
 Eigen::VectorXd parameters(const Rig& rig) {
+  check_complete(rig);
   Eigen::VectorXd a(parameter_count(rig));
   int index = 0;
   for (const Camera& camera : rig.cameras) {
-    check_parameters(camera);
     a.segment(index, camera.parameters.size()) = camera.parameters;
     index += static_cast<int>(camera.parameters.size());
   }
@@ -63,7 +86,7 @@ Eigen::VectorXd parameters(const Rig& rig) {
 }
 
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta) {
-  for (const Camera& camera : rig.cameras) check_parameters(camera);
+  check_complete(rig);
   if (delta.size() != parameter_count(rig)) {
     throw Error("rig",
                 fmt::format("{} changes for {} parameters", delta.size(), parameter_count(rig)),
@@ -82,6 +105,13 @@ Rig retract(const Rig& rig, const Eigen::VectorXd& delta) {
 }
 
 Eigen::VectorXd difference(const Rig& to, const Rig& from) {
+  const bool same = std::equal(
+      to.cameras.begin(), to.cameras.end(), from.cameras.begin(), from.cameras.end(),
+      [](const Camera& a, const Camera& b) { return a.model.index() == b.model.index(); });
+  if (!same) {
+    throw Error("rig", "the rigs differ in their number of cameras, or in a lens model",
+                "give two rigs of the same cameras and models");
+  }
   Eigen::VectorXd delta = parameters(to) - parameters(from);
   for (std::size_t i = 1; i < from.cameras.size(); ++i) {
     delta.segment<3>(pose_index(from, static_cast<int>(i))) =

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "calib/camera.h"
+#include "calib/camera/other_camera.h"
 #include "calib/camera/ray_derivatives.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -17,18 +18,19 @@ namespace vernier {
 
 using namespace internal;
 
+void internal::check_other(const Rig& rig, int other) {
+  const auto cameras = std::min(rig.cameras.size(), rig.T_camera_first.size());
+  if (other > 0 && other < static_cast<int>(cameras)) return;
+  throw Error("triangulation",
+              "the rig has " + std::to_string(cameras) +
+                  " camera(s), so the first cannot be paired with number " + std::to_string(other),
+              "give a rig of two or more");
+}
+
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-void check_other(const Rig& rig, int other) {
-  if (other > 0 && other < static_cast<int>(rig.cameras.size())) return;
-  throw Error("triangulation",
-              "the rig has " + std::to_string(rig.cameras.size()) +
-                  " camera(s), so the first cannot be paired with number " + std::to_string(other),
-              "give a rig of two or more");
-}
 
 /// Rays and the second camera's centre in the first camera's frame, with the lengths along the
 /// rays.

@@ -37,5 +37,36 @@ TEST(Rig, RetractRefusesAChangeOfAnotherSize) {
   }
 }
 
+TEST(Rig, IndicesOfCamerasThatAreNotThereAreRefused) {
+  const Rig rig = test::stereo_rig();
+  EXPECT_EQ(pose_index(rig, 1), 10);
+  EXPECT_EQ(test::error_message([&] { pose_index(rig, 0); }),
+            "rig: no such camera: 0 of 2; count from 0; the first camera has no pose");
+  EXPECT_EQ(test::error_message([&] { intrinsics_index(rig, 9); }),
+            "rig: no such camera: 9 of 2; count from 0");
+  EXPECT_NE(test::error_message([&] { intrinsics_index(rig, -1); }), "");
+}
+
+TEST(Rig, AMissingPoseIsRefused) {
+  Rig rig = test::stereo_rig();
+  rig.T_camera_first.pop_back();
+  const std::string text = "rig: 1 poses for 2 cameras; give one a camera, the first the identity";
+  EXPECT_EQ(test::error_message([&] { parameters(rig); }), text);
+  EXPECT_EQ(test::error_message([&] { retract(rig, Eigen::VectorXd::Zero(16)); }), text);
+  EXPECT_EQ(test::error_message([&] { difference(rig, test::stereo_rig()); }), text);
+}
+
+TEST(Rig, NoDifferenceOfRigsOfOtherCameras) {
+  const Rig rig = test::stereo_rig();
+  Rig fewer = rig;
+  fewer.cameras.pop_back();
+  fewer.T_camera_first.pop_back();
+  const std::string text =
+      "rig: the rigs differ in their number of cameras, or in a lens model; give two rigs of the "
+      "same cameras and models";
+  EXPECT_EQ(test::error_message([&] { difference(rig, fewer); }), text);
+  EXPECT_EQ(test::error_message([&] { difference(test::stereo_rig(Pinhole{}), rig); }), text);
+}
+
 }  // namespace
 }  // namespace vernier

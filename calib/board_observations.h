@@ -46,9 +46,9 @@ BoardObservations with_corners(
     const std::function<bool(const BoardView& view, std::size_t corner)>& kept);
 
 /// Sorts the views by frame, then camera, and checks that they can be used for calibration: sizes
-/// given, camera and corner indices in range, no camera twice in a frame, pixels finite and inside
-/// the image, corners of each view that determine the board's pose. Throws Error naming frame,
-/// camera and corner.
+/// given, target finite, camera and corner indices in range, no camera twice in a frame and no
+/// corner twice in a view, one finite pixel per corner inside the image, corners of each view that
+/// determine the board's pose. Throws Error naming frame, camera and corner.
 void check_and_sort(BoardObservations& observations);
 
 }  // namespace vernier

@@ -29,7 +29,9 @@ struct SimulatedBoard {
 /// Views of a chessboard that every camera of `rig` sees completely, with white noise, for tests
 /// and planning. Poses are drawn by (seed, set of poses, frame), noise by (seed, trial, frame,
 /// camera): trials differ in noise only, and fewer frames are the first of more. Throws Error if no
-/// such view can be found in 1000 tries.
+/// such view can be found in 1000 tries; for a board without two corners along each side, or with
+/// more than 1000; a rig without cameras, or with a pose or a number missing; frames not from 1 to
+/// 100000; and a distance that is not above 0, noise below 0, or a tilt that is not finite.
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
                               const SimulatedBoardOptions& options = {});

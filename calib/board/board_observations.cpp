@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/error.h"
 
@@ -21,15 +23,24 @@ void check_view(const BoardView& view, const BoardObservations& observations) {
   if (view.camera < 0 || view.camera >= static_cast<int>(observations.size_px.size())) {
     throw Error(place, "the image size of this camera is unknown", "give one size per camera");
   }
-  if (view.ids.size() != view.pixels_px.size() || view.ids.size() < 4) {
+  if (view.ids.size() != view.pixels_px.size()) {
+    throw Error(place,
+                std::to_string(view.pixels_px.size()) + " pixels for " +
+                    std::to_string(view.ids.size()) + " corners",
+                "give one pixel per corner");
+  }
+  if (view.ids.size() < 4) {
     throw Error(place, "fewer than four corners", "leave the view out");
   }
   const Eigen::Vector2d size = observations.size_px[view.camera].cast<double>();
+  std::vector<bool> seen(observations.target_m.size());
   for (std::size_t i = 0; i < view.ids.size(); ++i) {
     const std::string corner = place + ", corner " + std::to_string(view.ids[i]);
     if (view.ids[i] < 0 || view.ids[i] >= static_cast<int>(observations.target_m.size())) {
       throw Error(corner, "the target has no such corner", "check the board's size");
     }
+    if (seen[view.ids[i]]) throw Error(corner, "it appears twice in the view", "give it once");
+    seen[view.ids[i]] = true;
     const Eigen::Vector2d& pixel = view.pixels_px[i];
     if (!pixel.allFinite()) {
       throw Error(corner, "its pixel is not a finite number", "remove or correct it");
@@ -109,6 +120,11 @@ BoardObservations with_corners(
 }
 
 void check_and_sort(BoardObservations& observations) {
+  for (std::size_t i = 0; i < observations.target_m.size(); ++i) {
+    if (observations.target_m[i].allFinite()) continue;
+    throw Error("target, corner " + std::to_string(i), "its position is not a finite number",
+                "give it in metres");
+  }
   auto& views = observations.views;
   std::stable_sort(views.begin(), views.end(), [](const BoardView& a, const BoardView& b) {
     return std::pair(a.frame, a.camera) < std::pair(b.frame, b.camera);

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/simulated_board.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -66,11 +70,55 @@ std::optional<BoardView> view_of(const Rig& rig,
   return view;
 }
 
+void check_board(const Chessboard& board) {
+  constexpr int most = 1000;  // along a side; a larger number is a typing error
+  if (board.columns < 2 || board.rows < 2 || board.columns > most || board.rows > most) {
+    throw Error(name_of(board), fmt::format("fewer than 2 or more than {} along a side", most),
+                "count the inner corners");
+  }
+  const bool has_lengths = board.square_m > 0 && board.row_m >= 0;
+  if (!has_lengths || !std::isfinite(board.square_m) || !std::isfinite(board.row_m)) {
+    throw Error(name_of(board), "the distance between its corners is not above 0",
+                "give square_m in metres, and row_m or 0");
+  }
+}
+
+void check_options(const SimulatedBoardOptions& options) {
+  constexpr int most_frames = 100'000;
+  const std::string place = "simulated board";
+  if (options.frames < 1 || options.frames > most_frames) {
+    throw Error(place, fmt::format("{} frames", options.frames),
+                fmt::format("give 1 to {}", most_frames));
+  }
+  if (!(options.pixel_sigma_px >= 0) || !std::isfinite(options.pixel_sigma_px)) {
+    throw Error(place, fmt::format("pixel noise of {} px", options.pixel_sigma_px),
+                "give 0 or more");
+  }
+  if (!(options.distance_m > 0) || !std::isfinite(options.distance_m)) {
+    throw Error(place, fmt::format("a distance of {} m", options.distance_m),
+                "give a number above 0");
+  }
+  if (!std::isfinite(options.tilt_rad)) {
+    throw Error(place, fmt::format("a tilt of {} rad", options.tilt_rad), "give a finite number");
+  }
+}
+
+void check_cameras(const Rig& rig) {
+  if (rig.cameras.empty()) throw Error("simulated board", "the rig has no camera", "give one");
+  if (rig.T_camera_first.size() != rig.cameras.size() || !parameters(rig).allFinite()) {
+    throw Error("simulated board", "the rig lacks a pose or has a number that is not finite",
+                "give every camera a pose and finite parameters");
+  }
+}
+
 }  // namespace
 
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
                               const SimulatedBoardOptions& options) {
+  check_board(board);
+  check_options(options);
+  check_cameras(rig);
   SimulatedBoard result;
   BoardObservations& observations = result.observations;
   observations.target_m = target_points(board);

@@ -51,7 +51,8 @@ struct CalibrationOptions {
 /// that of their cost (calib/noise/random_effects.h), the bound its inverse information and the
 /// covariance from the scatter as above, with few frames in the shape of that bound; noise and
 /// residuals of the summary stay those of the cost above. Throws Error, naming what is
-/// undetermined, if observations and prior do not determine the rig.
+/// undetermined, if observations and prior do not determine the rig; for noise that is negative or
+/// not finite, and for no iterations.
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options = {});
 
 }  // namespace vernier

@@ -40,12 +40,14 @@ void add_pair(PairObservations& pairs,
 /// Adds all of `more` as separate image pairs; one with a number in use gets the smallest free one.
 void append(PairObservations& pairs, const PairObservations& more);
 
-/// The rows with `kept` set; image pairs without any are dropped.
+/// The rows with `kept` set; image pairs without any are dropped. Throws Error unless `kept` has a
+/// flag per row, and the image pairs hold every row once, in order.
 PairObservations selected(const PairObservations& pairs, const std::vector<bool>& kept);
 
-/// Checks that the pairs can be used for calibration: two cameras, pixels finite and inside the
-/// images, noise above 0 and finite, no repeated match. Throws Error naming the row as a line of
-/// the file `place` (rows begin on its second line), or by its number if `place` is empty.
+/// Checks that the pairs can be used for calibration: two cameras, image pairs that hold every row
+/// once, in order, pixels finite and inside the images, noise above 0 and finite (none, one or one
+/// per row), no repeated match. Throws Error naming the row as a line of the file `place` (rows
+/// begin on its second line), or by its number if `place` is empty.
 void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place = "");
 
 }  // namespace vernier

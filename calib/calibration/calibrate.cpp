@@ -347,6 +347,7 @@ void add_trust_warnings(const Solution& s,
 }  // namespace
 
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options) {
+  check_numbers(options);
   check_and_sort(observations);
   check_effects(options, observations.size_px.size());
   Solution s = solve(std::move(observations), options);

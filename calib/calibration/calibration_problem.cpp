@@ -2,13 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration/calibration_problem.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "calib/calibrate.h"
+#include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/solver/reprojection_problem.h"
 
 namespace vernier::internal {
+
+void check_numbers(const CalibrationOptions& options) {
+  if (!(options.pixel_sigma_px >= 0) || !std::isfinite(options.pixel_sigma_px)) {
+    throw Error("calibration", fmt::format("pixel noise of {} px", options.pixel_sigma_px),
+                "give a number above 0, or 0 to estimate it");
+  }
+  if (options.max_iterations < 1) {
+    throw Error("calibration", fmt::format("{} iterations", options.max_iterations),
+                "give 1 or more");
+  }
+}
 
 ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
   ReprojectionProblem problem;

@@ -13,4 +13,7 @@ namespace vernier::internal {
 /// parameter that the rig does not have.
 ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig);
 
+/// Throws Error for noise that is negative or not finite, and for no iterations.
+void check_numbers(const CalibrationOptions& options);
+
 }  // namespace vernier::internal

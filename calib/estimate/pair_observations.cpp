@@ -21,6 +21,31 @@ std::string row_place(const std::string& place, std::size_t row) {
   return place.empty() ? fmt::format("pair {}", row + 1) : fmt::format("{}:{}", place, row + 2);
 }
 
+/// Throws Error unless the image pairs hold every row once, in order, with its noise.
+void check_layout(const PairObservations& pairs, const std::string& place) {
+  const std::string where = place.empty() ? "pairs" : place;
+  std::size_t next = 0;
+  for (const ImagePair& image : pairs.image_pairs) {
+    if (image.first != next || image.count > pairs.size() - next) {
+      throw Error(where,
+                  fmt::format("image pair {} has {} rows from {} on, of {}, {} of which are taken",
+                              image.number, image.count, image.first, pairs.size(), next),
+                  "build them with add_pair");
+    }
+    next += image.count;
+  }
+  if (next != pairs.size()) {
+    throw Error(
+        where, fmt::format("{} of {} rows are of no image pair", pairs.size() - next, pairs.size()),
+        "build them with add_pair");
+  }
+  if (pairs.sigma_px.size() > 1 && pairs.sigma_px.size() != pairs.size()) {
+    throw Error(where,
+                fmt::format("{} values of noise for {} rows", pairs.sigma_px.size(), pairs.size()),
+                "give one per row, or one for all");
+  }
+}
+
 void check_row(const Eigen::Vector4d& y, const Rig& rig, const std::string& place) {
   if (!y.allFinite()) {
     throw Error(place, "a pixel coordinate is not finite", "remove the line");
@@ -99,6 +124,11 @@ void append(PairObservations& pairs, const PairObservations& more) {
 }
 
 PairObservations selected(const PairObservations& pairs, const std::vector<bool>& kept) {
+  check_layout(pairs, "");
+  if (kept.size() != pairs.size()) {
+    throw Error("pairs", fmt::format("{} flags for {} rows", kept.size(), pairs.size()),
+                "give one per row");
+  }
   PairObservations some;
   for (const ImagePair& image : pairs.image_pairs) {
     for (std::size_t i = image.first; i < image.first + image.count; ++i) {
@@ -110,6 +140,7 @@ PairObservations selected(const PairObservations& pairs, const std::vector<bool>
 
 void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place) {
   internal::require_pair(rig, place.empty() ? "pairs" : place);
+  check_layout(pairs, place);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double sigma = pairs.sigma_of(i);
     if (!(sigma > 0 && std::isfinite(sigma))) {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "calib/base/decompositions.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
@@ -136,6 +139,21 @@ TEST(Calibrate, WhatWasSeenBeforeItFailedIsPartOfTheFault) {
       << fault;
   EXPECT_EQ(remedy.find("the board measures"), std::string::npos);
   EXPECT_NE(remedy, "");
+}
+
+TEST(Calibrate, NumbersOutOfRangeAreRefused) {
+  const auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
+  const auto complaint = [&](const CalibrationOptions& options) {
+    return test::error_message([&] { calibrate(observations, options); });
+  };
+  for (const double sigma : {-1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_NE(complaint({.pixel_sigma_px = sigma}).find("calibration: pixel noise of"),
+              std::string::npos);
+  }
+  for (const int iterations : {0, -5}) {
+    EXPECT_EQ(complaint({.max_iterations = iterations}),
+              "calibration: " + std::to_string(iterations) + " iterations; give 1 or more");
+  }
 }
 
 }  // namespace

@@ -308,5 +308,22 @@ TEST_F(BadPairs, APriorThatThePairsContradictIsADoubt) {
       << joint.estimate.calibration->trust_warnings.back();
 }
 
+TEST_F(BadPairs, ImagePairsHoldEveryRowOnce) {
+  const auto complaint = [&](const PairObservations& pairs) {
+    return error_message([&] { calibrate_from_pairs(pairs, known_); });
+  };
+  PairObservations bad = pairs_;
+  bad.image_pairs.back().count += 1;
+  EXPECT_NE(complaint(bad).find("build them with add_pair"), std::string::npos);
+  EXPECT_NE(error_message([&] { selected(bad, std::vector<bool>(bad.size(), true)); }), "");
+  bad.image_pairs.pop_back();
+  EXPECT_NE(complaint(bad).find("rows are of no image pair"), std::string::npos);
+  bad = pairs_;
+  bad.sigma_px.resize(2, 1);
+  EXPECT_NE(complaint(bad).find("pairs: 2 values of noise for"), std::string::npos);
+  EXPECT_EQ(error_message([&] { selected(pairs_, {true}); }),
+            "pairs: 1 flags for " + std::to_string(pairs_.size()) + " rows; give one per row");
+}
+
 }  // namespace
 }  // namespace vernier

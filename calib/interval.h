@@ -29,7 +29,7 @@ struct ClusterCount {
 
 /// Factor by which clustering increases the variance of a proportion, at least 1: the
 /// between-cluster variance of the ratio estimate over the binomial one (Kish, "Survey Sampling",
-/// 1965). 1 for fewer than two clusters.
+/// 1965). 1 for fewer than two clusters. Throws Error unless 0 <= successes <= trials in each.
 double design_effect(std::span<const ClusterCount> clusters);
 
 }  // namespace vernier

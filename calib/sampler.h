@@ -37,7 +37,8 @@ class RigSampler {
   /// Throws Error if the estimate has no covariance or one that is not positive semi-definite.
   explicit RigSampler(const RigEstimate& estimate, const std::string& place = "rig");
 
-  /// Deviation in the tangent of draw `trial` under `seed`. Throws Error if it overflows.
+  /// Deviation in the tangent of draw `trial` under `seed`. Throws Error if it overflows, or
+  /// psi_c is negative or not a number.
   Eigen::VectorXd deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
 
   /// The rig of that draw, all its parameters finite; otherwise throws Error. Wide covariances give

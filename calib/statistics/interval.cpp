@@ -50,6 +50,11 @@ Interval clopper_pearson_interval(int successes, int trials, double confidence) 
 double design_effect(std::span<const ClusterCount> clusters) {
   double trials = 0, successes = 0;
   for (const ClusterCount& c : clusters) {
+    if (c.successes < 0 || c.successes > c.trials) {
+      throw Error("design effect",
+                  fmt::format("{} successes of {} in a cluster", c.successes, c.trials),
+                  "give 0 <= successes <= trials");
+    }
     trials += c.trials;
     successes += c.successes;
   }

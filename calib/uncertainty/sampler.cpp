@@ -38,6 +38,10 @@ RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
 }
 
 Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
+  if (!(psi_c >= 0)) {
+    throw Error(place_, fmt::format("psi_c = {} is not a factor on standard deviations", psi_c),
+                "give 0 or more");
+  }
   RandomStream draws({.seed = seed,
                       .trial = trial,
                       .source = static_cast<std::uint32_t>(DrawSource::calibration)});

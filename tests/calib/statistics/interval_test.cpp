@@ -71,5 +71,14 @@ TEST(DesignEffect, OneForEvenClustersAndLargeForUnevenOnes) {
   EXPECT_EQ(design_effect(std::vector<ClusterCount>{{3, 5}}), 1);
 }
 
+TEST(DesignEffect, RefusesCountsThatCannotBe) {
+  const auto complaint = [](const ClusterCount& count) {
+    return test::error_message([&] { design_effect(std::vector<ClusterCount>{{3, 5}, count}); });
+  };
+  EXPECT_EQ(complaint({-1, 2}),
+            "design effect: -1 successes of 2 in a cluster; give 0 <= successes <= trials");
+  EXPECT_NE(complaint({3, 2}), "");
+}
+
 }  // namespace
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "calib/covariance.h"
 #include "calib/rig.h"
@@ -43,6 +44,13 @@ TEST(PhysicalRig, HasPositiveFocalLengthsAndAspects) {
   EXPECT_EQ(unphysical(rig), "right.ax is not positive");
   rig.cameras[0].parameters[0] = 0;
   EXPECT_EQ(unphysical(rig), "left.f_px is not positive");
+}
+
+TEST(Sampler, RefusesANegativeScale) {
+  const RigSampler sampler(with_deviation(1e-3), "some.json");
+  EXPECT_EQ(test::error_message([&] { sampler.sample(-1, 1, 0); }),
+            "some.json: psi_c = -1 is not a factor on standard deviations; give 0 or more");
+  EXPECT_NE(test::error_message([&] { sampler.sample(std::nan(""), 1, 0); }), "");
 }
 
 }  // namespace

@@ -125,7 +125,8 @@ struct LocaliserOptions {
 ///    in a row at most. Throws Error if it cannot be started;
 ///  - any other that was registered.
 ///
-/// Throws Error for any other name, listing these, and for options out of range.
+/// Throws Error for another name, listing these, options out of range, and a factory that made
+/// none.
 std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const TopologicalMap& map,
                                           const LocaliserOptions& options = {});

@@ -254,7 +254,12 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
   }
   check(options);
   check(map);
-  return factory(map, options);
+  std::unique_ptr<Localiser> localiser = factory(map, options);
+  if (!localiser) {
+    throw Error("localiser " + vernier::internal::in_quotes(method), "its factory made none",
+                "return a localiser or throw Error");
+  }
+  return localiser;
 }
 
 }  // namespace vernier::localise

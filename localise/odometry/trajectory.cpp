@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -110,6 +111,9 @@ TrajectoryDrift drift_of(std::span<const Pose> estimate,
                          std::span<const Pose> truth,
                          double segment_m) {
   check_together(estimate, truth);
+  if (!(segment_m > 0) || !std::isfinite(segment_m)) {
+    throw Error("trajectory", "the length of a segment is not above 0", "give it in metres");
+  }
   std::vector<double> along_m{0};
   for (std::size_t i = 1; i < truth.size(); ++i) {
     along_m.push_back(along_m.back() + (truth[i].t - truth[i - 1].t).norm());
@@ -154,7 +158,14 @@ double step_nees(const MotionStep& step,
     }
     C += step.by_rig * calibration * step.by_rig.transpose();
   }
-  return error.dot(C.ldlt().solve(error));
+  const auto decomposed = C.ldlt();
+  const bool is_sound = error.allFinite() && C.allFinite() && decomposed.info() == Eigen::Success &&
+                        decomposed.vectorD().minCoeff() > 0;
+  if (!is_sound) {
+    throw Error("odometry", "a pose is not finite, or the step's covariance not positive definite",
+                "give a step as estimated, a true one and a covariance of the rig");
+  }
+  return error.dot(decomposed.solve(error));
 }
 
 }  // namespace vernier::localise

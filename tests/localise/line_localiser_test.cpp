@@ -434,5 +434,17 @@ TEST(RegisterLocaliser, MakesItKnown) {
             "and at least 1 line");
 }
 
+TEST(RegisterLocaliser, WhatMakesNoneIsRefused) {
+  EXPECT_EQ(test::error_message([] { register_localiser("made_of_nothing", {}); }),
+            "localiser \"made_of_nothing\": has no factory; give a function that makes one");
+  register_localiser("a_method_never_made", [](const TopologicalMap&, const LocaliserOptions&) {
+    return std::unique_ptr<Localiser>();
+  });
+  const TopologicalMap map;
+  EXPECT_EQ(test::error_message([&] { make_localiser("a_method_never_made", map); }),
+            "localiser \"a_method_never_made\": its factory made none; return a localiser or throw "
+            "Error");
+}
+
 }  // namespace
 }  // namespace vernier

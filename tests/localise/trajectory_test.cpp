@@ -107,5 +107,26 @@ TEST(Trajectory, DriftOfUnequalTrajectoriesIsRefused) {
   EXPECT_NE(error_message([] { drift_of(straight(1), straight(1), 1); }), "");
 }
 
+TEST(Trajectory, DriftOverNoLengthIsRefused) {
+  for (const double segment_m : {0.0, -1.0, std::nan("")}) {
+    EXPECT_EQ(error_message([&] { drift_of(straight(3), straight(3), segment_m); }),
+              "trajectory: the length of a segment is not above 0; give it in metres");
+  }
+}
+
+TEST(Trajectory, NoErrorInUnitsOfACovarianceThatIsNone) {
+  MotionStep step;
+  step.by_rig.setZero(6, 16);
+  step.covariance.setIdentity();
+  EXPECT_EQ(step_nees(step, {}), 0);
+  step.covariance.setZero();
+  EXPECT_NE(error_message([&] { step_nees(step, {}); }).find("not positive definite"),
+            std::string::npos);
+  step.covariance.setIdentity();
+  Pose nowhere;
+  nowhere.t.x() = std::nan("");
+  EXPECT_NE(error_message([&] { step_nees(step, nowhere); }), "");
+}
+
 }  // namespace
 }  // namespace vernier::localise

@@ -179,10 +179,13 @@ class LocalisationExperiment {
 
   /// Runs the trials of one block: the map is recorded once, with draws of its own. With
   /// MapRig::same the map is recorded again for every trial. Results depend on (settings, block,
-  /// trial) only. A trial without a told rig of its own, or of the map, has failed.
+  /// trial) only. A trial without a told rig of its own, or of the map, has failed. Throws Error
+  /// without `looks`.
   std::vector<TrialResult> run_block(const TrialBlock& block) const;
 
   /// One trial with a localiser of one's own or of make_localiser(), whose map record_map() made.
+  /// It has failed where the localiser throws what is no Error, states a probability beyond [0, 1],
+  /// or answers with numbers that are not finite.
   TrialResult run_trial(std::uint32_t trial,
                         const Rig& told,
                         const localise::TopologicalMap& map,

@@ -42,7 +42,7 @@ using AfterSource = std::function<void(const UncertaintySource& source, const Se
 /// The true rig observing the world through all enabled error sources.
 class Sensor {
  public:
-  /// Throws Error for settings out of range or a rig without exactly two cameras.
+  /// Throws Error for settings or a length out of range or a rig without exactly two cameras.
   Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
 
   /// The same look and draw give the same observation to the bit.

@@ -83,7 +83,9 @@ std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSet
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px);
 
-/// Creates a source from its options. Throws Error for options it does not accept.
+/// Creates a source from its options. Throws Error for options it does not accept; what else it
+/// throws is passed on as an Error. What else than Error such a source throws when it acts, and
+/// numbers that are not finite in an edge or a corner, fail the view (SensedView::failure).
 using SourceFactory = std::function<std::unique_ptr<UncertaintySource>(const SourceOptions&)>;
 
 /// Makes a source of one's own known by name to SourceSettings::own, and so to Sensor and to

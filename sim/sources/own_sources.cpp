@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -69,6 +73,68 @@ class SourceRegistry {
   std::map<std::string, SourceFactory> factories_;
 };
 
+/// Whether all that a source of one's own may have changed is a number.
+bool all_finite(const SensedView& view) {
+  const auto finite = [](const std::array<Eigen::Vector2d, 2>& pixels) {
+    return pixels[0].allFinite() && pixels[1].allFinite();
+  };
+  return std::all_of(view.edges.begin(), view.edges.end(),
+                     [&](const SensedEdge& edge) {
+                       return finite(edge.offset_px[0]) && finite(edge.offset_px[1]) &&
+                              edge.truth.a_m.allFinite() && edge.truth.b_m.allFinite();
+                     }) &&
+         std::all_of(view.corners.begin(), view.corners.end(),
+                     [&](const SensedCorner& corner) { return finite(corner.pixel_px); });
+}
+
+/// A source of one's own whose faults spoil a view and nothing else: what it throws that is no
+/// Error, and numbers that are none, are told as the view's failure.
+class GuardedSource : public UncertaintySource {
+ public:
+  GuardedSource(SourcePointer own, std::string place)
+      : own_(std::move(own)), place_(std::move(place)) {}
+
+  std::string_view name() const override { return own_->name(); }
+
+  void apply(const SensingContext& context, SensedView& view) const override {
+    try {
+      own_->apply(context, view);
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      view.failure = place_ + " threw: " + printable(error.what());
+    } catch (...) {
+      view.failure = place_ + " threw what is no std::exception";
+    }
+    if (view.failure.empty() && !all_finite(view)) {
+      view.failure = place_ + " left a number that is not finite in an edge or a corner";
+    }
+  }
+
+ private:
+  SourcePointer own_;
+  std::string place_;
+};
+
+/// What the factory makes. Throws Error, also for what it throws itself.
+SourcePointer made_by(const SourceFactory& factory,
+                      const SourceOptions& options,
+                      const std::string& place) {
+  SourcePointer source;
+  try {
+    source = factory(options);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::out_of_range&) {  // of options.at()
+    throw Error(place, "an option that it needs is missing", "give all its options");
+  } catch (const std::exception& error) {
+    throw Error(place, "its factory threw: " + printable(error.what()),
+                "check its options, or let it throw Error");
+  }
+  if (!source) throw Error(place, "its factory made none", "return a source or throw Error");
+  return source;
+}
+
 }  // namespace
 
 void register_source(const std::string& name, SourceFactory factory) {
@@ -87,9 +153,7 @@ SourcePointer make_own(const OwnSource& own) {
     throw Error(place, "is not registered",
                 known.empty() ? "register it (docs/own-source.md)" : "use " + alternatives(known));
   }
-  SourcePointer source = factory(own.options);
-  if (!source) throw Error(place, "its factory made none", "return a source or throw Error");
-  return source;
+  return std::make_unique<GuardedSource>(made_by(factory, own.options, place), place);
 }
 
 }  // namespace internal

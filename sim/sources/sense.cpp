@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sense.h"
 
+#include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
@@ -15,10 +19,26 @@ namespace vernier::sim {
 
 using namespace stereo;
 
+namespace {
+
+/// Throws Error for what a sensor cannot be made of.
+std::vector<std::unique_ptr<UncertaintySource>> checked_sources(const SourceSettings& settings,
+                                                                double min_length_px,
+                                                                const Rig& rig) {
+  check(settings, "sources");
+  if (!(min_length_px >= 0) || !std::isfinite(min_length_px)) {
+    throw Error("sensor", "the least length of a line is negative or not finite",
+                "give it in pixels");
+  }
+  return standard_sources(settings, min_length_px, rig);
+}
+
+}  // namespace
+
 Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px)
     : rig_(true_rig),
       rectification_(rectification(true_rig)),
-      sources_((check(settings, "sources"), standard_sources(settings, min_length_px, true_rig))) {}
+      sources_(checked_sources(settings, min_length_px, true_rig)) {}
 
 StereoObservation Sensor::sense(const NoiseFreeView& look,
                                 const SensingDraw& draw,

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "calib/base/shown_text.h"
 #include "calib/base/thread_clock.h"
 #include "calib/error.h"
 #include "calib/rig.h"
@@ -73,6 +75,36 @@ Rig required(ToldRig told, const char* what, std::uint32_t number) {
                 "give a smaller psi_c (sources.calibration) or, with [calibration], more views");
   }
   return std::move(told.rig);
+}
+
+/// The localiser's answer; failed where the localiser throws what is no Error, or answers with
+/// numbers that are none.
+LocalisationAnswer answer_of(const Localiser& localiser, const std::vector<Look>& looks) {
+  LocalisationAnswer failed;
+  failed.status = LocalisationStatus::failed;
+  try {
+    LocalisationAnswer answer =
+        looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
+    constexpr double rounding = 1e-9;
+    const Pose2D& pose = answer.pose;
+    const bool has_pose = answer.status == LocalisationStatus::answered ||
+                          answer.status == LocalisationStatus::unsure;
+    if (!(answer.probability >= -rounding && answer.probability <= 1 + rounding)) {
+      failed.failure = fmt::format("the localiser states a probability of {}", answer.probability);
+    } else if (has_pose && !(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) &&
+                             std::isfinite(pose.heading_rad))) {
+      failed.failure = "the localiser's pose is not finite";
+    } else if (!std::isfinite(answer.next_turn_rad)) {
+      failed.failure = "the localiser's next turn is not finite";
+    } else {
+      return answer;
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    failed.failure = "the localiser threw: " + printable(error.what());
+  }
+  return failed;
 }
 
 /// Of sixteen turns the one that is furthest from those of all looks.
@@ -169,7 +201,12 @@ Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
 }
 
 std::shared_ptr<const MapViews> LocalisationExperiment::views_of(std::uint32_t block) const {
-  if (!has_mount_error(settings_.sources)) return map_views_;
+  if (!has_mount_error(settings_.sources)) {
+    if (!map_views_) {
+      throw Error("localisation experiment", "has no views of the map", "give those of map_views");
+    }
+    return map_views_;
+  }
   const TrueMount stands =
       draw_mount(settings_.mount, settings_.sources, settings_.seed, map_trial + block);
   return std::make_shared<const MapViews>(map_views(visibility_, truth_, settings_, stands));
@@ -250,8 +287,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     const ThreadClock clock;
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
     looks.back().view.corners = std::move(corners);
-    answer =
-        looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
+    answer = answer_of(localiser, looks);
     result.cpu_ms += clock.cpu_ms() + answer.program_cpu_ms;
     result.wall_ms += clock.wall_ms();
 
@@ -270,8 +306,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.looks = static_cast<int>(looks.size());
   result.score = answer.score;
   result.runner_up = answer.runner_up;
-  result.probability =
-      std::isfinite(answer.probability) ? std::clamp(answer.probability, 0.0, 1.0) : 0;
+  result.probability = std::clamp(answer.probability, 0.0, 1.0);  // for rounding
   result.error = result.node_error_m = result.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
   if (result.answered() || answer.status == LocalisationStatus::unsure) {

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -272,6 +274,52 @@ TEST(ProgramSource, AnswersSeveralThreadsAsOne) {
     for (std::size_t k = 0; k < one[i].segments.size(); ++k) {
       EXPECT_EQ(one[i].segments[k].left.a_px, eight[i].segments[k].left.a_px);
     }
+  }
+}
+
+/// Does what a source must not do.
+class Careless : public UncertaintySource {
+ public:
+  explicit Careless(double fault) : fault_(fault) {}
+  std::string_view name() const override { return "careless"; }
+  void apply(const SensingContext&, SensedView& view) const override {
+    if (fault_ == 0) throw std::runtime_error("no\nluck");
+    if (fault_ == 1) throw Error("careless", "gives up", "");
+    if (fault_ == 2) view.edges.at(0).offset_px[1][0].y() = std::nan("");
+    if (fault_ == 3) view.corners.at(0).pixel_px[0].x() = std::nan("");
+  }
+
+ private:
+  double fault_;
+};
+
+TEST(OwnSource, ItsFaultsFailTheViewInItsName) {
+  register_source("careless", [](const SourceOptions& options) {
+    return std::make_unique<Careless>(options.at("fault"));
+  });
+  const auto& rig = test::nominal_rig().rig;
+  const auto failure = [&](double fault) {
+    SourceSettings settings;
+    settings.own = {{"careless", {{"fault", fault}}}};
+    return Sensor(rig, settings).sense(test::office_look()).failure;
+  };
+  const std::string not_finite =
+      "source \"careless\" left a number that is not finite in an edge or a corner";
+  EXPECT_EQ(failure(0), "source \"careless\" threw: no\\x0aluck");
+  EXPECT_EQ(error_message([&] { failure(1); }), "careless: gives up");
+  EXPECT_EQ(failure(2), not_finite);
+  EXPECT_EQ(failure(3), not_finite);
+  EXPECT_EQ(failure(4), "");
+  SourceSettings settings;
+  settings.own = {{"careless", {}}};
+  EXPECT_EQ(error_message([&] { Sensor(rig, settings); }),
+            "source \"careless\": an option that it needs is missing; give all its options");
+}
+
+TEST(Sensor, RefusesALengthOutOfRange) {
+  for (const double length_px : {-1.0, std::nan("")}) {
+    EXPECT_EQ(error_message([&] { Sensor(test::nominal_rig().rig, {}, length_px); }),
+              "sensor: the least length of a line is negative or not finite; give it in pixels");
   }
 }
 

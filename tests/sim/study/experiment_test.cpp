@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "calib/pose.h"
@@ -23,6 +25,7 @@
 #include "sim/sources.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
+#include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 #include "tests/support/python_program.h"
 #include "tests/support/small_office.h"
@@ -399,6 +402,53 @@ TEST_F(Experiments, SurviveASourceThatDies) {
     EXPECT_EQ(map_fails[i].truth.x_m, query_fails[i].truth.x_m);
     EXPECT_FALSE(map_fails[i].success());
   }
+}
+
+/// Answers what no method may.
+class Nonsense : public Localiser {
+ public:
+  explicit Nonsense(LocalisationAnswer answer) : answer_(std::move(answer)) {}
+  LocalisationAnswer localise(const PlaceView&) const override {
+    if (answer_.score < 0) throw std::runtime_error("no luck");
+    return answer_;
+  }
+
+ private:
+  LocalisationAnswer answer_;
+};
+
+TEST_F(Experiments, NonsenseOfALocaliserIsAFailedTrial) {
+  const ExperimentSettings s = settings(QueryProtocol::path);
+  const LocalisationExperiment e{visibility_, rig_, nullptr, s};
+  LocalisationAnswer sound;
+  sound.status = LocalisationStatus::answered;
+  sound.probability = 0.5;
+  const auto trial = [&](const LocalisationAnswer& answer) {
+    return e.run_trial(0, rig_.rig, {}, Nonsense(answer));
+  };
+  EXPECT_EQ(trial(sound).status, LocalisationStatus::answered);
+  EXPECT_EQ(trial(sound).probability, 0.5);
+  const auto expect_failed = [&](const LocalisationAnswer& answer, const char* why) {
+    const TrialResult failed = trial(answer);
+    EXPECT_EQ(failed.status, LocalisationStatus::failed);
+    EXPECT_EQ(failed.failure, why);
+    EXPECT_FALSE(failed.success());
+  };
+  LocalisationAnswer answer = sound;
+  answer.probability = 7;
+  expect_failed(answer, "the localiser states a probability of 7");
+  answer = sound;
+  answer.pose.y_m = std::nan("");
+  expect_failed(answer, "the localiser's pose is not finite");
+  answer = sound;
+  answer.score = -1;
+  expect_failed(answer, "the localiser threw: no luck");
+}
+
+TEST_F(Experiments, ABlockWithoutViewsOfTheMapIsRefused) {
+  const LocalisationExperiment e{visibility_, rig_, nullptr, settings(QueryProtocol::path)};
+  EXPECT_EQ(test::error_message([&] { e.run_block({.count = 1}); }),
+            "localisation experiment: has no views of the map; give those of map_views");
 }
 
 }  // namespace

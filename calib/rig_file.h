@@ -38,7 +38,8 @@ RigFile parse_rig(const std::string& text, const std::string& place);
 enum class KeepEvidence { yes, no };
 
 /// Text of a rig.json; numbers in the shortest form that reads back equal. Throws Error naming the
-/// key if a number is not finite, which JSON cannot represent.
+/// key if a number is not finite, which JSON cannot represent, and for a covariance that reading
+/// refuses: other names than the rig's parameters, not symmetric, a negative variance.
 std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence = KeepEvidence::yes);
 void write_rig(const RigEstimate& estimate,
                const std::filesystem::path& file,

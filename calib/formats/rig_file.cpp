@@ -18,6 +18,7 @@
 #include "calib/camera/rig_limits.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_check.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
@@ -85,23 +86,6 @@ std::vector<bool> unlisted(const Rig& rig, const std::vector<Eigen::Index>& list
   return held;
 }
 
-/// Throws Error if the listed parameters cannot have this covariance.
-void check_covariance(const Eigen::MatrixXd& matrix,
-                      const std::string& place,
-                      const Rig& rig,
-                      const std::vector<Eigen::Index>& listed) {
-  const std::vector<std::string> all = parameter_names(rig);
-  Covariance covariance{CovarianceKind::prior, {}, matrix};
-  for (const Eigen::Index i : listed) {
-    covariance.names.push_back(all[static_cast<std::size_t>(i)]);
-  }
-  try {
-    const ScaledDecomposition checked(covariance);
-  } catch (const Error& error) {
-    throw Error(place, error.fault(), error.remedy());
-  }
-}
-
 /// The matrix at `node`, one row per listed parameter, in the tangent; zero for the others.
 Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                                        const Rig& rig,
@@ -122,8 +106,9 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
         "give 0 or more");
   }
   rig_json::check_bounded(matrix, most_variance, stated);
-  check_covariance(matrix, stated.place(), rig, listed);
-  const Eigen::MatrixXd E = free_directions(rig, unlisted(rig, listed));
+  const std::vector<bool> held = unlisted(rig, listed);
+  check_covariance(matrix, free_names(rig, held), stated.place());
+  const Eigen::MatrixXd E = free_directions(rig, held);
   return E * matrix * E.transpose();
 }
 
@@ -172,6 +157,23 @@ void require_finite(const Json& json, const std::string& place) {
       require_finite(json[i], place + "[" + std::to_string(i) + "]");
     }
   }
+}
+
+/// Throws Error if the rig cannot have the estimate's covariances.
+void check_covariances(const RigEstimate& estimate) {
+  const auto check_one = [&](const Eigen::MatrixXd& matrix, const std::string& key) {
+    const std::string place = "rig." + key + ".matrix";
+    require_finite(to_json(matrix), place);
+    check_covariance(matrix, estimate.rig, place);
+  };
+  if (estimate.covariance) {
+    if (estimate.covariance->names != parameter_names(estimate.rig)) {
+      throw Error("rig.covariance", "its names are not those of the rig's parameters",
+                  "give it in the order of parameter_names");
+    }
+    check_one(estimate.covariance->matrix, "covariance");
+  }
+  if (estimate.covariance_mvb) check_one(*estimate.covariance_mvb, "covariance_mvb");
 }
 
 /// A prior in the form of a rig file.
@@ -273,6 +275,7 @@ RigFile read_rig(const std::filesystem::path& file) {
 }
 
 std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
+  check_covariances(estimate);
   Json json;
   json["format"] = "vernier/rig";
   json["version"] = 1;

@@ -12,6 +12,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_check.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"
@@ -78,11 +79,7 @@ ProjectionUncertainty::ProjectionUncertainty(const Rig& rig,
                 "a point fixed to the boards needs their poses, and a rig alone has none",
                 "calibrate with evidence, or fix the point to a camera");
   }
-  if (rig_covariance.rows() != parameter_count(rig) ||
-      rig_covariance.cols() != rig_covariance.rows()) {
-    throw Error("projection uncertainty", "the covariance does not match the rig's parameters",
-                "give one row and column per parameter");
-  }
+  check_covariance(rig_covariance, rig, "projection uncertainty");
   keep(rig_covariance, rig, camera, false);
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/triangulation_uncertainty.h"
 
+#include "calib/camera/other_camera.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_check.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"
@@ -13,22 +15,28 @@ namespace vernier {
 
 using namespace internal;
 
+namespace {
+
+constexpr const char* triangulation_place = "triangulation uncertainty";
+
+}  // namespace
+
 TriangulationUncertainty::TriangulationUncertainty(const RigAndBoards& joint,
                                                    TriangulationFrame frame,
                                                    int other)
     : rig_(joint.rig),
       other_(other),
       stabilised_(frame == TriangulationFrame::stabilised),
-      covariance_(stabilised_ ? rig_and_motion_covariance(joint) : joint.rig_covariance) {}
+      covariance_(stabilised_ ? rig_and_motion_covariance(joint) : joint.rig_covariance) {
+  check_other(rig_, other);
+}
 
 TriangulationUncertainty::TriangulationUncertainty(const Rig& rig,
                                                    const Eigen::MatrixXd& rig_covariance,
                                                    int other)
     : rig_(rig), other_(other), covariance_(rig_covariance) {
-  if (covariance_.rows() != parameter_count(rig) || covariance_.cols() != covariance_.rows()) {
-    throw Error("triangulation uncertainty", "the covariance does not match the rig's parameters",
-                "give one row and column per parameter");
-  }
+  check_other(rig, other);
+  check_covariance(covariance_, rig, triangulation_place);
 }
 
 TriangulationUncertainty::Sensitivity TriangulationUncertainty::sensitivity(
@@ -42,7 +50,7 @@ TriangulationUncertainty::Sensitivity TriangulationUncertainty::sensitivity(
 std::optional<TriangulatedPoint> TriangulationUncertainty::at(const PixelPair& pair,
                                                               double pair_sigma_px) const {
   if (!(pair_sigma_px >= 0)) {
-    throw Error("triangulation uncertainty", "the pair's pixel noise is negative or not a number",
+    throw Error(triangulation_place, "the pair's pixel noise is negative or not a number",
                 "give it in pixels");
   }
   const auto point = triangulate_point_with_jacobian(rig_, pair, other_);

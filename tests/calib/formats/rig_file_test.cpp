@@ -134,16 +134,19 @@ TEST(RigFile, WhatNoRigHasIsRefusedWithItsKey) {
 
 TEST(RigFile, ACovarianceThatIsNoneIsRefusedWithTheFile) {
   RigEstimate e = estimate();
-  e.covariance->matrix(0, 1) += 1;
-  EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
+  e.covariance->matrix.setIdentity();
+  e.covariance_mvb.reset();
+  const std::string row = "\"matrix\":[[1.0,0.0,";
+  const std::string text = format_rig(e, KeepEvidence::no);
+  EXPECT_EQ(complaint_of(test::replaced(text, row, "\"matrix\":[[1.0,0.5,")),
             "rig.json: covariance.matrix: it is not symmetric; check the rig file");
-  e.covariance->matrix(0, 0) = 1e31;
-  EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
+  EXPECT_EQ(complaint_of(test::replaced(text, row, "\"matrix\":[[1e31,0.0,")),
             "rig.json: covariance.matrix: holds a number beyond 1e+30; correct it");
-  e = estimate();
-  e.covariance_mvb->coeffRef(0, 1) = e.covariance_mvb->coeffRef(1, 0) =
-      2 * std::sqrt((*e.covariance_mvb)(0, 0) * (*e.covariance_mvb)(1, 1));
-  EXPECT_NE(complaint_of(format_rig(e, KeepEvidence::no))
+  e.covariance.reset();
+  e.covariance_mvb = Eigen::MatrixXd::Identity(16, 16);
+  const std::string bound =
+      test::replaced(format_rig(e, KeepEvidence::no), row, "\"matrix\":[[1.0,2.0,");
+  EXPECT_NE(complaint_of(test::replaced(bound, "],[0.0,1.0,0.0,", "],[2.0,1.0,0.0,"))
                 .find("rig.json: covariance_mvb.matrix: it is not positive semi-definite"),
             std::string::npos);
 }
@@ -332,6 +335,33 @@ TEST(RigFile, AnErrorOfWhatItNamesKeepsItsParts) {
   EXPECT_EQ(place, file.string() + ": cameras[0].model");
   EXPECT_EQ(fault, "camera model \"radial9\": unknown model");
   EXPECT_EQ(remedy, "supported: radial1, pinhole, opencv4, opencv5, opencv8, fisheye4");
+}
+
+TEST(RigFile, CovariancesThatReadingRefusesAreNotWritten) {
+  const auto complaint = [](const RigEstimate& e) {
+    return test::error_message([&] { format_rig(e); });
+  };
+  RigEstimate e = estimate();
+  e.covariance->matrix(3, 3) *= -1;
+  EXPECT_NE(complaint(e).find("rig.covariance.matrix: the variance of left.oy_px"),
+            std::string::npos)
+      << complaint(e);
+  e = estimate();
+  e.covariance->matrix(0, 1) += 0.1 * e.covariance->matrix(0, 0);
+  EXPECT_NE(complaint(e).find("rig.covariance.matrix: it is not symmetric"), std::string::npos)
+      << complaint(e);
+  e = estimate();
+  Eigen::MatrixXd& bound = *e.covariance_mvb;
+  bound(0, 2) = bound(2, 0) = 3 * std::sqrt(bound(0, 0) * bound(2, 2));
+  EXPECT_NE(complaint(e).find("rig.covariance_mvb.matrix: it is not positive semi-definite"),
+            std::string::npos)
+      << complaint(e);
+  e = estimate();
+  e.covariance->names[0] = "left.g_px";
+  EXPECT_NE(complaint(e).find("rig.covariance: its names"), std::string::npos) << complaint(e);
+  e = estimate();
+  e.covariance->matrix = Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_NE(complaint(e).find("does not match the rig's parameters"), std::string::npos);
 }
 
 }  // namespace

@@ -576,5 +576,23 @@ TEST(SampledPropagation, BadInputIsNamed) {
                "cannot be triangulated with the rig itself");
 }
 
+TEST(Propagation, CamerasAndCovariancesThatCannotBeAreRefused) {
+  const Rig& rig = nominal_estimate().rig;
+  const Eigen::MatrixXd negative = -Eigen::MatrixXd::Identity(16, 16);
+  const Eigen::MatrixXd& sound = nominal_estimate().covariance->matrix;
+  EXPECT_NE(error_output([&] { TriangulationUncertainty(rig, negative); }).find("the variance of"),
+            std::string::npos);
+  EXPECT_NE(error_output([&] {
+              ProjectionUncertainty(rig, negative, 0, PointFixedTo::camera);
+            }).find("the variance of"),
+            std::string::npos);
+  for (const int other : {-1, 0, 2}) {
+    EXPECT_NE(error_output([&] {
+                TriangulationUncertainty(rig, sound, other);
+              }).find("cannot be paired with number " + std::to_string(other)),
+              std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace vernier

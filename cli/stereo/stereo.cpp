@@ -21,6 +21,7 @@
 #include "cli/program/session.h"
 #include "cli/stereo/disparity_picture.h"
 #include "cli/stereo/matcher_names.h"
+#include "cli/stereo/outside_range.h"
 #include "cli/stereo/stereo_files.h"
 #include "cli/stereo/stereo_input.h"
 #include "cli/stereo/swapped_pair.h"
@@ -31,7 +32,6 @@
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/external_matcher.h"
-#include "stereo/matching/range_probe.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
 
@@ -39,8 +39,6 @@ namespace vernier::cli {
 namespace {
 
 constexpr double min_density = 0.2;    // warn if a smaller fraction of the edges is matched
-constexpr double some_outside = 0.01;  // warn if so many edges match outside the range …
-constexpr double many_outside = 0.05;  // … and do not trust the result
 constexpr double max_uncertain = 0.5;  // warn if a larger fraction of segments has uncertain depth
 
 struct StereoArguments {
@@ -87,27 +85,6 @@ struct EdgesMatched {
   int asked = 0, matched = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
 };
-
-/// What matches outside the range has a wrong match inside it, of which nothing else shows that.
-/// Whether there is some.
-bool tell_outside_range(const StereoInput& input, Session& session) {
-  const OutsideRange outside = outside_range(input.pair, input.range);
-  const double share = outside.below + outside.above;
-  if (share < some_outside) return false;
-  const bool is_below = outside.below >= some_outside, is_above = outside.above >= some_outside;
-  std::string text = fmt::format(
-      "{:.2g} % of the edges match outside the range, {:.2g} % below {} px and {:.2g} % above {} "
-      "px: "
-      "what they match inside it is wrong; ",
-      100 * share, 100 * outside.below, input.range.min_px, 100 * outside.above,
-      input.range.max_px);
-  if (is_below) text += fmt::format("give --min-disparity {}", outside.wider.min_px);
-  if (is_below && is_above) text += " and ";
-  if (is_above || !is_below) text += fmt::format("give --max-disparity {}", outside.wider.max_px);
-  text += ", unless a texture that repeats is matched a period too far";
-  share >= many_outside ? session.add_trust_warning(text) : session.warn(text);
-  return true;
-}
 
 EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
   EdgesMatched f;
@@ -196,7 +173,7 @@ void check_result(const StereoArguments& options,
                                    : "--repair corrects this, a calibration of today its cause"));
   } else if (!of_map.empty()) {
     session.add_trust_warning(of_map);
-  } else if (!tell_outside_range(input, session) && edges.share() < min_density) {
+  } else if (!tell_outside_range(input.pair, input.range, session) && edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",

@@ -107,8 +107,8 @@ class EdgeRefinement {
     const double seen = image_noise(matrix_of(pair.left));
     const double left = pair.left_noise > 0 ? pair.left_noise : seen;
     how.noise_left = static_cast<float>(left);
-    how.noise_right = static_cast<float>(
-        pair.right_noise > 0 ? pair.right_noise : image_noise(matrix_of(pair.right)));
+    how.noise_right = static_cast<float>(pair.right_noise > 0 ? pair.right_noise
+                                                              : image_noise(matrix_of(pair.right)));
     // Half that of white noise; of an image resampled by cubic convolution 0.335 of that before,
     // of which its single pixels show a third.
     how.slope_variance = static_cast<float>((seen * seen + left * left) / 4);

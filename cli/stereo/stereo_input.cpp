@@ -48,6 +48,12 @@ void check(const StereoInputOptions& o) {
   }
 }
 
+/// Throws Error naming the option, of those that are given, for a range that cannot be.
+void check_range(const StereoInputOptions& o, const DisparityRange& range, int width_px) {
+  vernier::stereo::internal::check_range(
+      range, width_px, o.max_disparity_px ? "--max-disparity" : "--min-disparity");
+}
+
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Rig& rig = input.estimate->rig;
   require_pair(rig, o.rig, o.rig);
@@ -61,6 +67,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
     throw Error(o.rig, fmt::format("{:.0f} % of a rectified image is blank", 100 * blank),
                 "check its cameras' poses: they do not look the same way");
   }
+  check_range(o, input.range, images.pair.left.width_px);
   check_matcher_input(images.pair, input.range, o.right);
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);
@@ -130,6 +137,7 @@ void reach_infinity(const StereoInputOptions& o, StereoInput& input, Session& se
 }
 
 void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  check_range(o, input.range, input.pair.left.width_px);
   check_matcher_input(input.pair, input.range, o.right);
   check_two_images(input.pair, o.left, o.right);
   take_cameras(o, input, session);

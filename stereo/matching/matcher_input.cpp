@@ -20,6 +20,20 @@ bool is_whole(const GreyLevels& image) {
 
 }  // namespace
 
+void check_range(const DisparityRange& range, int width_px, const std::string& place) {
+  if (range.min_px > range.max_px) {
+    throw Error(place,
+                fmt::format("the disparity range {} to {} is empty", range.min_px, range.max_px),
+                "give the smaller value first");
+  }
+  if (range.max_px >= width_px || range.min_px <= -width_px) {
+    throw Error(place,
+                fmt::format("the disparity range {} to {} exceeds the image width of {}",
+                            range.min_px, range.max_px, width_px),
+                "reduce the range");
+  }
+}
+
 void check_matcher_input(const RectifiedPair& pair,
                          const DisparityRange& range,
                          const std::string& place) {
@@ -33,17 +47,7 @@ void check_matcher_input(const RectifiedPair& pair,
   if (!is_whole(left) || !is_whole(right)) {
     throw Error(place, "the images have no pixels", "use a rectified pair");
   }
-  if (range.min_px > range.max_px) {
-    throw Error(place,
-                fmt::format("the disparity range {} to {} is empty", range.min_px, range.max_px),
-                "give the smaller value first");
-  }
-  if (range.max_px >= left.width_px || range.min_px <= -left.width_px) {
-    throw Error(place,
-                fmt::format("the disparity range {} to {} exceeds the image width of {}",
-                            range.min_px, range.max_px, left.width_px),
-                "reduce the range");
-  }
+  check_range(range, left.width_px, place);
 }
 
 }  // namespace vernier::stereo::internal

@@ -14,4 +14,7 @@ void check_matcher_input(const RectifiedPair& pair,
                          const DisparityRange& range,
                          const std::string& place);
 
+/// Throws Error (`place`) for a range that is empty or exceeds the width of the images.
+void check_range(const DisparityRange& range, int width_px, const std::string& place);
+
 }  // namespace vernier::stereo::internal

@@ -312,7 +312,7 @@ class Made(Case):
         for files, words in ((dict(right='small'), 'small.pgm: the left image is 200x120'),
                              (dict(left='blank', right='right'), 'no edges'),
                              (dict(left='right', right='left'), 'appear to be swapped'),
-                             (dict(most=400), 'exceeds the image width'),
+                             (dict(most=400), '--max-disparity: the disparity range 0 to 400 exceeds'),
                              (dict(right='left'), 'same image'),
                              (dict(rectified=False), "no rig given")):
             self.complains(*self.arguments(**files), '-q', of=words, leaves=out)

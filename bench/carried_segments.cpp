@@ -191,7 +191,7 @@ Frame read_frame(const Rig& rig,
                  const GreyLevels& right) {
   const RectifiedImages images = rectified_images(rig, geometry, left, right, 0);
   CannyOptions canny;
-  canny.noise = images.pair.left_noise;
+  canny.noise = images.pair.left_noise.per_pixel();
   const std::vector<EdgePoint> edges = canny_edges(images.pair.left, canny);
   const auto found = edge_matcher().match(images.pair, edges, {0, geometry.size_px[0] / 8});
   return {segment_disparities(edges, edge_segments(edges), found),

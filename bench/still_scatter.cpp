@@ -59,7 +59,7 @@ Look look_at(const Rig& rig,
   const RectifiedImages images = rectified_images(rig, geometry, left, right, 0);
   Look look;
   CannyOptions canny;
-  canny.noise = images.pair.left_noise;
+  canny.noise = images.pair.left_noise.per_pixel();
   look.edges = canny_edges(images.pair.left, canny);
   std::erase_if(look.edges, [&](const EdgePoint& e) { return !images.left_valid(e.x, e.y); });
   look.matches = match_edges(images.pair, look.edges, {0, geometry.size_px[0] / 4});

@@ -74,7 +74,7 @@ std::vector<PlacedLine> reconstructed(const Rig& told,
   const RectifiedGeometry geometry = rectified_geometry(told);
   const RectifiedImages images = rectified_images(told, geometry, pair.left, pair.right);
   CannyOptions canny;
-  canny.noise = images.pair.left_noise;
+  canny.noise = images.pair.left_noise.per_pixel();
   const std::vector<EdgePoint> edges = canny_edges(images.pair.left, canny);
   const auto found = edge_matcher().match(images.pair, edges, range);
   std::vector<PlacedLine> lines;

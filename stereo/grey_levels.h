@@ -26,12 +26,19 @@ struct GreyLevels {
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
 /// Two images in which corresponding rows show the same epipolar plane.
+/// White noise of an image before it was resampled. It moves edges and disparities, while single
+/// pixels, whose neighbours err alike, show less of it.
+struct SourceNoise {
+  double levels = 0;  ///< standard deviation, grey levels; 0: not resampled, as far as is known
+  double zoom = 1;    ///< new pixels per pixel along a side, at least 1
+
+  /// White noise of a new pixel with as much power over a patch.
+  double per_pixel() const { return levels * zoom; }
+};
+
 struct RectifiedPair {
   GreyLevels left, right;
-  /// White noise of the images before they were resampled, grey levels of a pixel of these: it
-  /// moves edges and disparities, while single pixels, whose neighbours err alike, show less of it.
-  /// 0: they were not resampled, as far as is known.
-  double left_noise = 0, right_noise = 0;
+  SourceNoise left_noise, right_noise;
 };
 
 /// The pair with its images exchanged.

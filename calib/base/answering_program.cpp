@@ -80,7 +80,10 @@ void AnsweringProgram::take_answer(std::string_view line,
   Json json = parse_json(line, "answer");
   const JsonNode answer(json, "answer:");
   if (!answer.has(number_key)) {
-    throw Error(answer.place(), "has not the number of its question", "repeat \"question\"");
+    throw Error(
+        answer.place(),
+        fmt::format("does not repeat the number of its question, \"{}\": {}", number_key, asked_),
+        "");
   }
   const Json number = answer.at(number_key).json();
   if (number != asked_) {
@@ -88,7 +91,7 @@ void AnsweringProgram::take_answer(std::string_view line,
     throw Error(answer.place(),
                 fmt::format("is for question {} where {} was asked{}", in_quotes(number.dump()),
                             asked_, earlier ? ": more than one line for a question" : ""),
-                "answer each question once");
+                "");
   }
   json.erase(number_key);
   take(answer);
@@ -100,8 +103,8 @@ bool AnsweringProgram::ask(const std::function<Json()>& question,
   if (!program_ && failures_ > 0) start();  // that the first start failed is told here
   ++failures_;
   if (!program_) return false;
-  Json asked{{number_key, ++asked_}};
-  asked.update(question());
+  Json asked = question();
+  asked[number_key] = ++asked_;
   std::string line;
   const Outcome outcome = program_->ask(asked.dump() + "\n", time_limit_s_, line);
   failure_ = fault(outcome, time_limit_s_, *program_);

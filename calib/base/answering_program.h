@@ -25,7 +25,7 @@ struct ProgramStart {
 /// A program that answers questions, a line of JSON each, for as long as it behaves: one that ends,
 /// is late or answers nonsense is started again with the next question, and after three failures
 /// one after the other left alone. Questions have numbers, "question" from 1, which their answers
-/// repeat: a line too many cannot be taken for the answer to the next question, whenever it comes.
+/// repeat: a line too many is not taken for the answer to the next question, whenever it comes.
 /// Not for several threads at once.
 class AnsweringProgram {
  public:

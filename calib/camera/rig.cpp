@@ -13,6 +13,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/rig_limits.h"
+#include "calib/camera/same_lens_models.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 
@@ -105,10 +106,7 @@ Rig retract(const Rig& rig, const Eigen::VectorXd& delta) {
 }
 
 Eigen::VectorXd difference(const Rig& to, const Rig& from) {
-  const bool same = std::equal(
-      to.cameras.begin(), to.cameras.end(), from.cameras.begin(), from.cameras.end(),
-      [](const Camera& a, const Camera& b) { return a.model.index() == b.model.index(); });
-  if (!same) {
+  if (!internal::same_lens_models(from, to)) {
     throw Error("rig", "the rigs differ in their number of cameras, or in a lens model",
                 "give two rigs of the same cameras and models");
   }
@@ -152,6 +150,12 @@ Rig rig_of(std::vector<PlacedCamera> cameras) {
     rig.cameras.push_back(std::move(c.camera));
   }
   return rig;
+}
+
+bool internal::same_lens_models(const Rig& a, const Rig& b) {
+  return std::equal(
+      a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(),
+      [](const Camera& x, const Camera& y) { return x.model.index() == y.model.index(); });
 }
 
 }  // namespace vernier

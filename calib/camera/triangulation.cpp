@@ -23,7 +23,8 @@ void internal::check_other(const Rig& rig, int other) {
   if (other > 0 && other < static_cast<int>(cameras)) return;
   throw Error("triangulation",
               "the rig has " + std::to_string(cameras) +
-                  " camera(s), so the first cannot be paired with number " + std::to_string(other),
+                  " camera(s) with a pose, so the first cannot be paired with number " +
+                  std::to_string(other),
               "give a rig of two or more");
 }
 

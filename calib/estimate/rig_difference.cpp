@@ -15,8 +15,10 @@
 
 #include "calib/board_observations.h"
 #include "calib/camera.h"
+#include "calib/camera/same_lens_models.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/covariance_check.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/estimate/same_rig.h"
 #include "calib/estimate/stable_coordinates.h"
@@ -143,12 +145,11 @@ Eigen::MatrixXd covariance_of_difference(const Rig& a,
 }
 
 void check_covariance(const Rig& rig, const Covariance& covariance, const char* place) {
-  const auto n = static_cast<Eigen::Index>(covariance.names.size());
-  if (covariance.names != parameter_names(rig) || covariance.matrix.rows() != n ||
-      covariance.matrix.cols() != n) {
-    throw Error(place, "its covariance does not match the rig's parameters", "");
+  if (covariance.names != parameter_names(rig)) {
+    throw Error(place, "its covariance does not match the rig's parameters",
+                "give it in the order of parameter_names");
   }
-  ScaledDecomposition{covariance};  // throws if it is not positive semi-definite
+  internal::check_covariance(covariance.matrix, rig, place);
 }
 
 /// b's coordinates about a and their covariance, in which errors are closer to normal than in the

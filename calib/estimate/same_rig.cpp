@@ -59,13 +59,6 @@ void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b) 
   }
 }
 
-bool same_lens_models(const Rig& a, const Rig& b) {
-  for (std::size_t c = 0; c < a.cameras.size(); ++c) {
-    if (model_name(a.cameras[c].model) != model_name(b.cameras[c].model)) return false;
-  }
-  return true;
-}
-
 int shared_views(const CalibrationEvidence& a,
                  const Rig& rig_a,
                  const CalibrationEvidence& b,

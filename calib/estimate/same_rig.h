@@ -13,9 +13,6 @@ namespace vernier::internal {
 /// cameras.
 void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b);
 
-/// Whether each camera has the same lens model in both. They have as many cameras.
-bool same_lens_models(const Rig& a, const Rig& b);
-
 /// Number of views (one camera in one frame) of `a` that are the same image in `b`: the pixels of
 /// the common corners are equal, or the image's name is and they differ by less than 2 px (rms, per
 /// coordinate).

@@ -169,7 +169,7 @@ void check_covariances(const RigEstimate& estimate) {
   if (estimate.covariance) {
     if (estimate.covariance->names != parameter_names(estimate.rig)) {
       throw Error("rig.covariance", "its names are not those of the rig's parameters",
-                  "give it in the order of parameter_names");
+                  "give it in the order of parameter_names; rename cameras by rename_cameras");
     }
     check_one(estimate.covariance->matrix, "covariance");
   }

@@ -4,31 +4,53 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/program/session.h"
+#include "cli/stereo/stereo_input.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matching/range_probe.h"
+#include "stereo/rectified_images.h"
 
 namespace vernier::cli {
 
-bool tell_outside_range(const RectifiedPair& pair, const DisparityRange& range, Session& session) {
-  constexpr double some = 0.01, many = 0.05;
-  const OutsideRange outside = outside_range(pair, range);
-  const double share = outside.below + outside.above;
-  if (share < some) return false;
-  const bool is_below = outside.below >= some, is_above = outside.above >= some;
-  std::string text = fmt::format(
-      "{:.2g} % of the edges match outside the range, {:.2g} % below {} px and {:.2g} % above {} "
-      "px: "
-      "what they match inside it is wrong; ",
-      100 * share, 100 * outside.below, range.min_px, 100 * outside.above, range.max_px);
-  if (is_below) text += fmt::format("give --min-disparity {}", outside.wider.min_px);
-  if (is_below && is_above) text += " and ";
-  if (is_above || !is_below) text += fmt::format("give --max-disparity {}", outside.wider.max_px);
-  text += ", unless a texture that repeats is matched a period too far";
+bool doubt_range(const StereoInput& input, Session& session) {
+  constexpr double some = 0.01, many = 0.05, enough_matched = 0.2;
+  constexpr int least = 10;  // edges that are no chance
+  const DisparityRange& range = input.range;
+  const auto source_of = [](const std::optional<ValidPixels>& mask) {
+    return mask ? HasSource(std::cref(*mask)) : HasSource();
+  };
+  const OutsideRange outside =
+      outside_range(input.pair, range, source_of(input.left_valid), source_of(input.right_valid));
+  // Images of different scenes match by chance, anywhere.
+  if (outside.matched < enough_matched * outside.edges) return false;
+  std::vector<std::string> what, remedies;
+  double share = 0;
+  const auto add = [&](int count, int wider_px, int limit_px, const char* side) {
+    const double part = static_cast<double>(count) / std::max(1, outside.matched);
+    if (count < least || part < some) return;
+    share += part;
+    const std::string option =
+        side == std::string_view("below") ? "--min-disparity" : "--max-disparity";
+    what.push_back(fmt::format("{:.0f} % of the edges match {} {} px", 100 * part, side, limit_px));
+    if (wider_px != limit_px) remedies.push_back(fmt::format("{} {}", option, wider_px));
+  };
+  add(outside.below, outside.wider.min_px, range.min_px, "below");
+  add(outside.above, outside.wider.max_px, range.max_px, "above");
+  if (what.empty()) return false;
+  const std::string text = fmt::format(
+      "{}, outside the range: what they match inside it is wrong{}{}, unless a texture that "
+      "repeats "
+      "is matched a period too far",
+      fmt::join(what, " and "), remedies.empty() ? "" : "; give ", fmt::join(remedies, " and "));
   share >= many ? session.add_trust_warning(text) : session.warn(text);
-  return true;
+  return share >= many;
 }
 
 }  // namespace vernier::cli

@@ -99,7 +99,7 @@ EdgesMatched edge_figures(const StereoResult& result, double min_angle_rad) {
 /// The edges of the left image at valid pixels.
 std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& file) {
   CannyOptions canny;
-  canny.noise = input.pair.left_noise;
+  canny.noise = input.pair.left_noise.per_pixel();
   std::vector<EdgePoint> edges = canny_edges(input.pair.left, canny);
   if (input.left_valid) {
     std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });
@@ -173,7 +173,7 @@ void check_result(const StereoArguments& options,
                                    : "--repair corrects this, a calibration of today its cause"));
   } else if (!of_map.empty()) {
     session.add_trust_warning(of_map);
-  } else if (!tell_outside_range(input.pair, input.range, session) && edges.share() < min_density) {
+  } else if (!doubt_range(input, session) && edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <map>
 #include <span>
-#include <vector>
 
 #include "calib/pose.h"
 #include "localise/odometry.h"

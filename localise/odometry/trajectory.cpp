@@ -158,14 +158,17 @@ double step_nees(const MotionStep& step,
     }
     C += step.by_rig * calibration * step.by_rig.transpose();
   }
-  const auto decomposed = C.ldlt();
-  const bool is_sound = error.allFinite() && C.allFinite() && decomposed.info() == Eigen::Success &&
-                        decomposed.vectorD().minCoeff() > 0;
+  const Vector6d sd = C.diagonal().cwiseMax(0).cwiseSqrt();
+  const Vector6d z = error.cwiseQuotient(sd);  // of rad and m alike
+  const Matrix6d correlation = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
+  const auto decomposed = correlation.ldlt();
+  const bool is_sound = z.allFinite() && correlation.allFinite() &&
+                        decomposed.info() == Eigen::Success && decomposed.vectorD().minCoeff() > 0;
   if (!is_sound) {
     throw Error("odometry", "a pose is not finite, or the step's covariance not positive definite",
                 "give a step as estimated, a true one and a covariance of the rig");
   }
-  return error.dot(decomposed.solve(error));
+  return z.dot(decomposed.solve(z));
 }
 
 }  // namespace vernier::localise

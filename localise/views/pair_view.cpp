@@ -32,7 +32,7 @@ namespace {
 
 std::vector<EdgePoint> edges_at_valid_pixels(const RectifiedImages& images) {
   CannyOptions canny;
-  canny.noise = images.pair.left_noise;
+  canny.noise = images.pair.left_noise.per_pixel();
   std::vector<EdgePoint> edges = canny_edges(images.pair.left, canny);
   std::erase_if(edges, [&](const EdgePoint& e) { return !images.left_valid(e.x, e.y); });
   return edges;

@@ -18,6 +18,7 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/sources/sensed_check.h"
 #include "sim/visibility.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
@@ -81,9 +82,7 @@ DepthSegments DepthCameraSensor::sense(const Visibility& visibility,
                                        const NoiseFreeViewOptions& how,
                                        const SensingDraw& draw) const {
   const StereoObservation seen = pair_.sense(look(visibility, eye_, pose, how), draw);
-  if (!seen.failure.empty()) {
-    throw Error("source of one's own", seen.failure, "correct it (docs/own-source.md)");
-  }
+  require_sensed(seen);
   DepthSegments result;
   for (std::size_t i = 0; i < seen.segments.size(); ++i) {
     const stereo::StereoSegment& s = seen.segments[i];

@@ -202,7 +202,8 @@ class MatcherSystem : public SystemUnderTest {
                                               {cell_.experiment.seed, result.trial, 0});
     const ToldTruth truth = told_truth(scene_, rig_, told, geometry, T_left, 1);
     const stereo::RectifiedPair& pair = images.rectified.pair;
-    const std::vector<EdgePoint> edges = stereo::canny_edges(pair.left, {.noise = pair.left_noise});
+    const std::vector<EdgePoint> edges =
+        stereo::canny_edges(pair.left, {.noise = pair.left_noise.per_pixel()});
     const std::vector<stereo::TruthAtEdge> at_edges = stereo::truth_at(truth.stereo, edges);
     const std::vector<stereo::EdgeDisparity> found =
         timed_match(pair, edges, search_range(truth.stereo.disparity), result);

@@ -11,6 +11,7 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/sources/sensed_check.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
@@ -38,8 +39,8 @@ CornerDrive drive_past_corners(const Visibility& visibility,
     NoiseFreeView seen = look(visibility, true_rig, pose, looking);
     seen.edges.clear();  // only corners are sensed
     const SensingDraw draw{.seed = seed, .trial = trial, .frame = moment};
-    drive.moments.push_back(
-        stereo_corners(sensor.sense(seen, draw), appearance, sources, eye_of(pose, mount), draw));
+    drive.moments.push_back(stereo_corners(internal::require_sensed(sensor.sense(seen, draw)),
+                                           appearance, sources, eye_of(pose, mount), draw));
     drive.T_world_left.push_back(T_left_world(pose, mount).inverse());
   }
   return drive;

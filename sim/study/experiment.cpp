@@ -103,6 +103,8 @@ LocalisationAnswer answer_of(const Localiser& localiser, const std::vector<Look>
     throw;
   } catch (const std::exception& error) {
     failed.failure = "the localiser threw: " + printable(error.what());
+  } catch (...) {
+    failed.failure = "the localiser threw what is no std::exception";
   }
   return failed;
 }

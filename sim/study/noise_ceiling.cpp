@@ -14,6 +14,7 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/sources/sensed_check.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/floor_grid.h"
 #include "sim/study/look_alike_poses.h"
@@ -92,7 +93,8 @@ std::optional<std::vector<Pose2D>> NoiseCeiling::rivals(const Pose2D& pose) cons
 }
 
 NoisyLook NoiseCeiling::look_from(const Pose2D& pose, const SensingDraw& draw) const {
-  const auto sensed = sensor_.sense(look(visibility_, rig_, pose, options_), draw).segments;
+  const StereoObservation seen = sensor_.sense(look(visibility_, rig_, pose, options_), draw);
+  const auto& sensed = require_sensed(seen).segments;
   NoisyLook result;
   result.elsewhere = -std::numeric_limits<double>::infinity();
   result.here = improved(sensed, {pose, score(sensed, pose)}).score;

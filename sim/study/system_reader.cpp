@@ -36,9 +36,10 @@ bool counts(const SystemOption& option, const SystemSettings& settings) {
   return other.empty() || settings.text(other) == word;
 }
 
-/// Columns of a trial that every system has.
-const std::vector<std::string> own_columns{"cell",    "block", "trial",  "status",  "answered",
-                                           "success", "error", "cpu_ms", "wall_ms", "reason"};
+/// Columns of a trial that every system has, and what else a measured quantity cannot be called.
+const std::vector<std::string> own_columns{
+    "cell",  "block",  "trial",   "status", "answered", "success",
+    "error", "cpu_ms", "wall_ms", "reason", "question"};  // the number in a program's answer
 
 /// Names of columns of results: small letters, digits and underscores, a letter first.
 bool is_name(const std::string& text) {

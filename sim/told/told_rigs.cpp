@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/camera/same_lens_models.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/estimate/same_rig.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"

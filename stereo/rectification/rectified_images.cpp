@@ -61,12 +61,10 @@ void rectify(const Rig& rig,
   rectified = resampled(raw, geometry.size_px, source, threads);
 }
 
-/// White noise of as much power over a patch as the raw image's has in the rectified one: where
-/// that is magnified, a raw pixel's noise covers more pixels.
-double resampled_noise(const Camera& camera,
-                       const RectifiedGeometry& geometry,
-                       const GreyLevels& raw) {
-  return image_noise(matrix_of(raw)) * std::max(1.0, geometry.f_px / camera.f_px());
+SourceNoise source_noise(const Camera& camera,
+                         const RectifiedGeometry& geometry,
+                         const GreyLevels& raw) {
+  return {image_noise(matrix_of(raw)), std::max(1.0, geometry.f_px / camera.f_px())};
 }
 
 }  // namespace
@@ -91,8 +89,8 @@ RectifiedImages rectified_images(const Rig& rig,
   RectifiedImages images;
   rectify(rig, geometry, 0, left, threads, images.pair.left, images.left_valid);
   rectify(rig, geometry, 1, right, threads, images.pair.right, images.right_valid);
-  images.pair.left_noise = resampled_noise(rig.cameras[0], geometry, left);
-  images.pair.right_noise = resampled_noise(rig.cameras[1], geometry, right);
+  images.pair.left_noise = source_noise(rig.cameras[0], geometry, left);
+  images.pair.right_noise = source_noise(rig.cameras[1], geometry, right);
   return images;
 }
 

@@ -294,7 +294,7 @@ GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field) 
 void correct_right(const VerticalField& field, RectifiedPair& pair) {
   if (!field.significant) return;
   GreyLevels corrected = corrected_right(pair.right, field);
-  if (pair.right_noise == 0) pair.right_noise = image_noise(matrix_of(pair.right));
+  if (pair.right_noise.levels == 0) pair.right_noise.levels = image_noise(matrix_of(pair.right));
   pair.right = std::move(corrected);
 }
 

@@ -188,7 +188,7 @@ class Made(Case):
             done = cli_test.vernier(*of_range(least, most), '--json')
             self.assertEqual(done.returncode, 3, done.stderr)
             (doubt,) = json.loads(done.stdout)['doubts']
-            self.assertIn('of the edges match outside the range', doubt)
+            self.assertRegex(doubt, r'^[0-9]+ % of the edges match (below 10|above 6) px, outside the range')
             wider = int(re.search(of + r' (-?[0-9]+)', doubt).group(1))
             again = of_range(least, wider) if of == '--max-disparity' else of_range(wider, most)
             self.assertNotIn('outside the range', self.works(*again).stderr)

@@ -35,7 +35,7 @@ TEST(RangeProbe, OfARangeThatHoldsTheSceneFindsNothing) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const OutsideRange outside = outside_range(two_depths(6, 24, seed), {0, 40});
     EXPECT_GT(outside.matched, 500);
-    EXPECT_LT(outside.below + outside.above, 0.005) << seed;
+    EXPECT_LT(outside.below + outside.above, 0.005 * outside.matched) << seed;
     EXPECT_EQ(outside.wider.min_px, 0);
     EXPECT_EQ(outside.wider.max_px, 40);
   }
@@ -44,9 +44,9 @@ TEST(RangeProbe, OfARangeThatHoldsTheSceneFindsNothing) {
 TEST(RangeProbe, FindsWhatLiesBelow) {
   for (const double far_px : {-5.0, -12.0}) {
     const OutsideRange outside = outside_range(two_depths(far_px, 24, 11), {0, 40});
-    EXPECT_GT(outside.below, 0.3) << far_px;
-    EXPECT_LT(outside.below, 0.7) << far_px;
-    EXPECT_LT(outside.above, 0.005) << far_px;
+    EXPECT_GT(outside.below, 0.3 * outside.matched) << far_px;
+    EXPECT_LT(outside.below, 0.7 * outside.matched) << far_px;
+    EXPECT_LT(outside.above, 0.005 * outside.matched) << far_px;
     EXPECT_LE(outside.wider.min_px, far_px);
     EXPECT_GE(outside.wider.min_px, far_px - 10);
   }
@@ -54,9 +54,9 @@ TEST(RangeProbe, FindsWhatLiesBelow) {
 
 TEST(RangeProbe, FindsWhatLiesAbove) {
   const OutsideRange outside = outside_range(two_depths(6, 40, 21), {0, 30});
-  EXPECT_GT(outside.above, 0.3);
-  EXPECT_LT(outside.above, 0.7);
-  EXPECT_LT(outside.below, 0.005);
+  EXPECT_GT(outside.above, 0.3 * outside.matched);
+  EXPECT_LT(outside.above, 0.7 * outside.matched);
+  EXPECT_LT(outside.below, 0.005 * outside.matched);
   EXPECT_GE(outside.wider.max_px, 40);
   EXPECT_LE(outside.wider.max_px, 50);
 }
@@ -72,6 +72,17 @@ TEST(RangeProbe, StaysWithinTheWidth) {
   const OutsideRange outside = outside_range(two_depths(6, 24, 31), {0, 319});
   EXPECT_GT(outside.matched, 500);
   EXPECT_EQ(outside.above, 0);
+}
+
+TEST(RangeProbe, LeavesOutPixelsWithoutASource) {
+  const RectifiedPair pair = two_depths(-12, 24, 41);
+  const HasSource near_half = [&](int x, int) { return 2 * x > pair.left.width_px; };
+  const OutsideRange all = outside_range(pair, {0, 40}),
+                     left = outside_range(pair, {0, 40}, near_half),
+                     right = outside_range(pair, {0, 40}, {}, near_half);
+  EXPECT_LT(left.edges, 0.6 * all.edges);
+  EXPECT_LT(left.below, 0.01 * left.matched);
+  EXPECT_LT(right.below, 0.2 * all.below);  // of the far half, what is seen beyond the middle
 }
 
 }  // namespace

@@ -76,10 +76,10 @@ std::vector<double> normalised_errors(bool of_raw) {
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     const GreyLevels raw = edge_image(seed);
     const RectifiedImages images = rectified_images(rig, g, raw, raw);
-    EXPECT_NEAR(images.pair.left_noise, noise, 0.1 * noise);
-    EXPECT_EQ(images.pair.left_noise, images.pair.right_noise);
+    EXPECT_NEAR(images.pair.left_noise.levels, noise, 0.1 * noise);
+    EXPECT_EQ(images.pair.left_noise.levels, images.pair.right_noise.levels);
     CannyOptions options;
-    if (of_raw) options.noise = images.pair.left_noise;
+    if (of_raw) options.noise = images.pair.left_noise.per_pixel();
     for (const EdgePoint& e : canny_edges(images.pair.left, options)) {
       for (const EdgePoint& t : truth) {
         if (t.y != e.y || std::abs(t.row_x_px - e.row_x_px) > 2) continue;
@@ -142,7 +142,7 @@ std::vector<double> normalised_disparities(bool of_raw) {
   for (std::uint64_t seed = 100; seed < 112; ++seed) {
     RectifiedImages images =
         rectified_images(rig, g, with_noise(left, 2 * seed), with_noise(right, 2 * seed + 1));
-    if (!of_raw) images.pair.left_noise = images.pair.right_noise = 0;
+    if (!of_raw) images.pair.left_noise = images.pair.right_noise = {};
     const std::vector<EdgePoint> points = canny_edges(images.pair.left);
     for (const EdgeMatch& match : match_edges(images.pair, points, {-5, 5}, options)) {
       if (match.refined) z.push_back(double(match.at.disparity_px / match.at.sigma_px));

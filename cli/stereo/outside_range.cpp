@@ -45,8 +45,7 @@ bool doubt_range(const StereoInput& input, Session& session) {
   add(outside.above, outside.wider.max_px, range.max_px, "above");
   if (what.empty()) return false;
   const std::string text = fmt::format(
-      "{}, outside the range: what they match inside it is wrong{}{}, unless a texture that "
-      "repeats "
+      "{}, outside the range: what they match inside it is wrong{}{}, unless a texture repeats and "
       "is matched a period too far",
       fmt::join(what, " and "), remedies.empty() ? "" : "; give ", fmt::join(remedies, " and "));
   share >= many ? session.add_trust_warning(text) : session.warn(text);

@@ -25,7 +25,6 @@ struct GreyLevels {
 /// empty string. Throws Error for a file that is not an image or is truncated.
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
-/// Two images in which corresponding rows show the same epipolar plane.
 /// White noise of an image before it was resampled. It moves edges and disparities, while single
 /// pixels, whose neighbours err alike, show less of it.
 struct SourceNoise {
@@ -36,9 +35,10 @@ struct SourceNoise {
   double per_pixel() const { return levels * zoom; }
 };
 
+/// Two images in which corresponding rows show the same epipolar plane.
 struct RectifiedPair {
   GreyLevels left, right;
-  SourceNoise left_noise, right_noise;
+  SourceNoise left_noise = {}, right_noise = {};
 };
 
 /// The pair with its images exchanged.

@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/program/session.h"
@@ -32,17 +31,16 @@ bool doubt_range(const StereoInput& input, Session& session) {
   if (outside.matched < enough_matched * outside.edges) return false;
   std::vector<std::string> what, remedies;
   double share = 0;
-  const auto add = [&](int count, int wider_px, int limit_px, const char* side) {
+  const auto add = [&](int count, const char* side, const char* option, int limit_px,
+                       int wider_px) {
     const double part = static_cast<double>(count) / std::max(1, outside.matched);
     if (count < least || part < some) return;
     share += part;
-    const std::string option =
-        side == std::string_view("below") ? "--min-disparity" : "--max-disparity";
     what.push_back(fmt::format("{:.0f} % of the edges match {} {} px", 100 * part, side, limit_px));
     if (wider_px != limit_px) remedies.push_back(fmt::format("{} {}", option, wider_px));
   };
-  add(outside.below, outside.wider.min_px, range.min_px, "below");
-  add(outside.above, outside.wider.max_px, range.max_px, "above");
+  add(outside.below, "below", "--min-disparity", range.min_px, outside.wider.min_px);
+  add(outside.above, "above", "--max-disparity", range.max_px, outside.wider.max_px);
   if (what.empty()) return false;
   const std::string text = fmt::format(
       "{}, outside the range: what they match inside it is wrong{}{}, unless a texture repeats and "

@@ -48,10 +48,14 @@ void check(const StereoInputOptions& o) {
   }
 }
 
-/// Throws Error naming the option, of those that are given, for a range that cannot be.
-void check_range(const StereoInputOptions& o, const DisparityRange& range, int width_px) {
-  vernier::stereo::internal::check_range(
-      range, width_px, o.max_disparity_px ? "--max-disparity" : "--min-disparity");
+/// Throws Error for a range that cannot be, naming the option, of those that are given, and for a
+/// pair that cannot be matched.
+void check_pair(const StereoInputOptions& o,
+                const RectifiedPair& pair,
+                const DisparityRange& range) {
+  check_range(range, pair.left.width_px,
+              o.max_disparity_px ? "--max-disparity" : "--min-disparity");
+  check_matcher_input(pair, range, o.right);
 }
 
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
@@ -67,8 +71,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
     throw Error(o.rig, fmt::format("{:.0f} % of a rectified image is blank", 100 * blank),
                 "check its cameras' poses: they do not look the same way");
   }
-  check_range(o, input.range, images.pair.left.width_px);
-  check_matcher_input(images.pair, input.range, o.right);
+  check_pair(o, images.pair, input.range);
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);
   input.left_valid = std::move(images.left_valid);
@@ -137,8 +140,7 @@ void reach_infinity(const StereoInputOptions& o, StereoInput& input, Session& se
 }
 
 void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
-  check_range(o, input.range, input.pair.left.width_px);
-  check_matcher_input(input.pair, input.range, o.right);
+  check_pair(o, input.pair, input.range);
   check_two_images(input.pair, o.left, o.right);
   take_cameras(o, input, session);
   reach_infinity(o, input, session);

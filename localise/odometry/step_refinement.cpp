@@ -220,15 +220,15 @@ std::vector<CornerInfluence> corner_influences(const Rig& rig,
     of.residual.setZero();
     LinearisedCorner c;
     if (!linearise(projectors, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
-    const Matrix6d M = in_motion(c, c.by_motion);
+    const Eigen::Matrix<double, 6, 8> by_measured =
+        in_motion(c, Eigen::Matrix<double, 8, 8>(Eigen::Matrix<double, 8, 8>::Identity()));  // AᵀQ
+    const Matrix6d M = by_measured * c.by_motion;
     const Matrix6d others = Matrix6d::Identity() - M * inverse;
-    const Vector6d g = others.partialPivLu().solve(in_motion(c, c.residual));
+    const Vector6d g = others.partialPivLu().solve(by_measured * c.residual);
     // A corner without which the motion is not determined has no residual to judge it by.
     const bool judged = g.allFinite();
     if (judged) of.residual = std::sqrt(as_seen) * inverse * g;
-    const Eigen::Matrix<double, 6, 8> by_noise =
-        inverse *
-        in_motion(c, Eigen::Matrix<double, 8, 8>(Eigen::Matrix<double, 8, 8>::Identity()));
+    const Eigen::Matrix<double, 6, 8> by_noise = inverse * by_measured;
     const double sd = std::sqrt((judged ? as_stated : 1) * factor);
     of.from = sd * by_noise.leftCols<4>();
     of.to = sd * by_noise.rightCols<4>();

@@ -104,16 +104,16 @@ class EdgeRefinement {
     RefinementOptions how;
     how.max_shift_px =
         slanted ? 1.0f : 0.7f;  // the support's disparity is mostly within half a pixel
-    const double seen_left = image_noise(matrix_of(pair.left)),
-                 seen_right = image_noise(matrix_of(pair.right));
     const bool resampled = pair.left_noise.levels > 0;
-    how.noise_left = static_cast<float>(resampled ? pair.left_noise.per_pixel() : seen_left);
+    const double seen = image_noise(matrix_of(pair.left)),
+                 levels = resampled ? pair.left_noise.levels : seen;
+    how.noise_left = static_cast<float>(resampled ? pair.left_noise.per_pixel() : seen);
     how.noise_right =
-        static_cast<float>(pair.right_noise.levels > 0 ? pair.right_noise.per_pixel() : seen_right);
+        static_cast<float>(pair.right_noise.levels > 0 ? pair.right_noise.per_pixel()
+                                                       : image_noise(matrix_of(pair.right)));
     // Half of white noise's; of an image that was resampled by cubic convolution 0.35 of that
     // before, of which its single pixels show a third.
-    const double left = resampled ? pair.left_noise.levels : seen_left;
-    how.slope_variance = static_cast<float>((seen_left * seen_left + left * left) / 4);
+    how.slope_variance = static_cast<float>((seen * seen + levels * levels) / 4);
     return how;
   }
 

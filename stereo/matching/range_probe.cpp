@@ -35,7 +35,7 @@ OutsideRange outside_range(const RectifiedPair& pair,
   OutsideRange outside;
   outside.wider = range;
   if (std::min(pair.left.width_px, pair.left.height_px) < least_side_px) return outside;
-  const RectifiedPair half{half_size(pair.left), half_size(pair.right), {}, {}};
+  const RectifiedPair half{half_size(pair.left), half_size(pair.right)};
   const int lowest = static_cast<int>(std::floor(0.5 * range.min_px)),
             highest = static_cast<int>(std::ceil(0.5 * range.max_px));
   const int longer = std::max(least_longer_px, (highest - lowest) / 2),

@@ -33,7 +33,8 @@ enum class PointFixedTo {
 /// numbers instead of all board poses.
 class ProjectionUncertainty {
  public:
-  /// From rig and boards. Any `fixed_to`.
+  /// From rig and boards. Any `fixed_to`. Throws Error if the rig's covariance does not match its
+  /// parameters, is not symmetric or has a negative variance.
   ProjectionUncertainty(const RigAndBoards& joint, int camera, PointFixedTo fixed_to);
   /// From a covariance of the rig's parameters alone: `camera` or `first_camera`, else Error.
   ProjectionUncertainty(const Rig& rig,

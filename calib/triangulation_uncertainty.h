@@ -40,10 +40,10 @@ struct TriangulatedPoint {
 /// stabilize_coords=True, computed from the six numbers of calib/uncertainty/pose_covariance.h.
 class TriangulationUncertainty {
  public:
-  /// Throws Error unless `other` is a camera of the rig and not its first.
+  /// Throws Error unless `other` is a camera of the rig and not its first, and if the rig's
+  /// covariance does not match its parameters, is not symmetric or has a negative variance.
   TriangulationUncertainty(const RigAndBoards& joint, TriangulationFrame frame, int other = 1);
-  /// In the rig's frame. Throws Error too if the covariance does not match the rig's parameters, is
-  /// not symmetric or has a negative variance.
+  /// In the rig's frame. Throws Error as above.
   TriangulationUncertainty(const Rig& rig, const Eigen::MatrixXd& rig_covariance, int other = 1);
 
   /// With pixel noise σ = pair_sigma_px on each coordinate of the pair. std::nullopt if the pair

@@ -219,6 +219,10 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
     throw Error(inputs.front().name, "pairs alone do not determine a rig",
                 "give a prior or a board calibration first");
   }
+  if (!(options.min_p >= 0 && options.min_p <= 1)) {
+    throw Error("min_p", "it is not a number from 0 to 1",
+                "give the smallest p-value of an input that is used");
+  }
   const Rig& start = inputs.front().estimate->rig;
   const JointOptions joint = with_held(options.joint, inputs.front());
   Combination result;

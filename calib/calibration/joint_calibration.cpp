@@ -212,6 +212,11 @@ void warn(const JointCalibration& joint,
 JointMinimum start_of(const JointEvidence& evidence,
                       const Rig& start,
                       const JointOptions& options) {
+  if (!(options.pair_sigma_scale >= 0 && std::isfinite(options.pair_sigma_scale))) {
+    throw Error(
+        "pair_sigma_scale", "it is not a number from 0 on",
+        "give by how much the stated noise of the pairs is multiplied, or 0 to estimate it");
+  }
   JointMinimum joint;
   joint.boards = merge_boards(evidence.boards, start);
   joint.terms = evidence.boards;

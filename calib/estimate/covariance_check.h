@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/covariance.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {
@@ -16,7 +17,10 @@ void check_covariance(const Eigen::MatrixXd& matrix,
                       const std::vector<std::string>& names,
                       const std::string& place);
 
-/// The same for all parameters of a rig.
+/// Throws Error (`place`) unless a covariance's names are those of the rig's parameters, in order.
+void check_names(const Covariance& covariance, const Rig& rig, const std::string& place);
+
+/// The same as above for all parameters of a rig.
 void check_covariance(const Eigen::MatrixXd& matrix, const Rig& rig, const std::string& place);
 
 }  // namespace vernier::internal

@@ -145,10 +145,7 @@ Eigen::MatrixXd covariance_of_difference(const Rig& a,
 }
 
 void check_covariance(const Rig& rig, const Covariance& covariance, const char* place) {
-  if (covariance.names != parameter_names(rig)) {
-    throw Error(place, "its covariance does not match the rig's parameters",
-                "give it in the order of parameter_names");
-  }
+  internal::check_names(covariance, rig, place);
   internal::check_covariance(covariance.matrix, rig, place);
 }
 

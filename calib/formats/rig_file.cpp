@@ -167,10 +167,7 @@ void check_covariances(const RigEstimate& estimate) {
     check_covariance(matrix, estimate.rig, place);
   };
   if (estimate.covariance) {
-    if (estimate.covariance->names != parameter_names(estimate.rig)) {
-      throw Error("rig.covariance", "its names are not those of the rig's parameters",
-                  "give it in the order of parameter_names; rename cameras by rename_cameras");
-    }
+    check_names(*estimate.covariance, estimate.rig, "rig.covariance");
     check_one(estimate.covariance->matrix, "covariance");
   }
   if (estimate.covariance_mvb) check_one(*estimate.covariance_mvb, "covariance_mvb");

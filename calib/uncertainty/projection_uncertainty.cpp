@@ -64,6 +64,7 @@ ProjectionUncertainty::ProjectionUncertainty(const RigAndBoards& joint,
                                              int camera,
                                              PointFixedTo fixed_to)
     : fixed_to_(fixed_to) {
+  check_covariance(joint.rig_covariance, joint.rig, "projection uncertainty");
   const bool with_motion = fixed_to == PointFixedTo::boards;
   keep(with_motion ? rig_and_motion_covariance(joint) : joint.rig_covariance, joint.rig, camera,
        with_motion);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "calib/error.h"
+#include "calib/estimate/covariance_check.h"
 #include "calib/estimate/stable_coordinates.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -31,9 +32,7 @@ namespace {
 
 RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
     : place_(place), mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {
-  if (estimate.covariance->names != parameter_names(mean_)) {
-    throw Error(place, "its covariance does not match the rig's parameters", "");
-  }
+  check_names(*estimate.covariance, mean_, place);
   coordinates_ = std::make_shared<const StableCoordinates>(mean_, estimate.covariance->matrix);
 }
 

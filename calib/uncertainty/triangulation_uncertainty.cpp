@@ -24,11 +24,10 @@ constexpr const char* triangulation_place = "triangulation uncertainty";
 TriangulationUncertainty::TriangulationUncertainty(const RigAndBoards& joint,
                                                    TriangulationFrame frame,
                                                    int other)
-    : rig_(joint.rig),
-      other_(other),
-      stabilised_(frame == TriangulationFrame::stabilised),
-      covariance_(stabilised_ ? rig_and_motion_covariance(joint) : joint.rig_covariance) {
+    : rig_(joint.rig), other_(other), stabilised_(frame == TriangulationFrame::stabilised) {
   check_other(rig_, other);
+  check_covariance(joint.rig_covariance, rig_, triangulation_place);
+  covariance_ = stabilised_ ? rig_and_motion_covariance(joint) : joint.rig_covariance;
 }
 
 TriangulationUncertainty::TriangulationUncertainty(const Rig& rig,

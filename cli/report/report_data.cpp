@@ -146,7 +146,9 @@ Json report_view(const Study& study) {
   options.with_corners = true;
   const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);
-  const StereoObservation sighting = sensor.sense(seen, {.seed = settings.seed});
+  StereoObservation sighting = sensor.sense(seen, {.seed = settings.seed});
+  const std::string failure = sighting.failure;
+  if (!failure.empty()) sighting = {};
   const Json both = sighting_json(study.rig.rig, seen, sighting);
   // A line counts as mismatched if true and sensed disparity differ by more than shifts explain.
   Json sensed = Json::array();
@@ -161,14 +163,17 @@ Json report_view(const Study& study) {
     row.push_back(std::abs(disparity - truth) > 2 ? 1 : 0);
     sensed.push_back(std::move(row));
   }
-  return {{"camera_size_px", both["camera_size_px"]},
-          {"pose", both["pose"]},
-          {"true", both["true"]["left"]},
-          {"sensed", sensed},
-          {"corners", both["corners"]["left"]},
-          {"words", fmt::format("Left view of trial 0: {} edges visible in both cameras, {} sensed "
-                                "after applying all error sources.",
-                                seen.edges.size(), sighting.segments.size())}};
+  return {
+      {"camera_size_px", both["camera_size_px"]},
+      {"pose", both["pose"]},
+      {"true", both["true"]["left"]},
+      {"sensed", sensed},
+      {"corners", both["corners"]["left"]},
+      {"words",
+       fmt::format("Left view of trial 0: {} edges visible in both cameras, {}.", seen.edges.size(),
+                   failure.empty() ? fmt::format("{} sensed after applying all error sources",
+                                                 sighting.segments.size())
+                                   : "none shown as sensed, since a source failed: " + failure)}};
 }
 
 bool has_script(const fs::path& folder) { return fs::is_regular_file(folder / script_file); }

@@ -184,6 +184,12 @@ void check_result(const StereoArguments& options,
     if (!session.trust_warnings().empty()) return;  // for the reason given above
     session.add_trust_warning(
         "no segment could be reconstructed; segments.json gives the reason for each");
+  } else if (depth.reliable == 0) {
+    session.add_trust_warning(
+        fmt::format("all {} segments lie farther than {:g} m and count as unreliable: check the "
+                    "focal length and "
+                    "the baseline, or give a larger --max-depth-m",
+                    depth.placed, options.space.max_depth_m));
   } else if (depth.linear < (1 - max_uncertain) * depth.placed) {
     session.add_trust_warning(fmt::format(
         "the depth of {} of {} segments is uncertain by more than 10 %: {}; {}",

@@ -43,13 +43,22 @@ Pose2D first_pose(const Pose2D& pose, double turn_rad) {
   return {pose.x_m, pose.y_m, pose.heading_rad - turn_rad};
 }
 
-/// From the best of the poses of votes to one at which candidates can be told apart. Nothing if it
-/// is far behind `leader`, the best score of such a pose so far, which it may raise.
-std::optional<ImprovedPose> refine(const ComparedView& view,
-                                   const SpaceLines& lines,
-                                   std::span<const VotePeak> starts,
-                                   PredictedLines& room,
-                                   float& leader) {
+/// From a pose of votes to one at which candidates can be told apart.
+ImprovedPose refine(const ComparedView& view,
+                    const SpaceLines& lines,
+                    const Pose2D& start,
+                    PredictedLines& room) {
+  const ImprovedPose wide = improve(view, lines, start, wide_steps, wide_agreement(), room);
+  return improve(view, lines, wide.pose, refine_steps, rough_agreement(), room);
+}
+
+/// From the best of the poses of votes. Nothing if it is far behind `leader`, the best score of
+/// such a pose so far, which it may raise.
+std::optional<ImprovedPose> refine_best(const ComparedView& view,
+                                        const SpaceLines& lines,
+                                        std::span<const VotePeak> starts,
+                                        PredictedLines& room,
+                                        float& leader) {
   ImprovedPose best;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const ImprovedPose start =
@@ -58,8 +67,7 @@ std::optional<ImprovedPose> refine(const ComparedView& view,
   }
   leader = std::max(leader, best.score);
   if (best.score < leader - hopeless_nats * static_cast<float>(view.observations)) return {};
-  best = improve(view, lines, best.pose, wide_steps, wide_agreement(), room);
-  return improve(view, lines, best.pose, refine_steps, rough_agreement(), room);
+  return refine(view, lines, best.pose, room);
 }
 
 }  // namespace
@@ -110,7 +118,7 @@ void LineLocaliser::wide_candidates(const Seen& seen,
 }
 
 /// Adds the best pose around a rough one, by votes and rough comparison with the merged lines of
-/// the nearest node.
+/// the nearest node; in a thorough search one for each peak of the votes, however they compare.
 void LineLocaliser::near_pose(const Pose2D& pose, const Seen& look, Query& query) const {
   const int node = grid_.nearest(pose);
   if (node < 0) return;
@@ -124,14 +132,20 @@ void LineLocaliser::near_pose(const Pose2D& pose, const Seen& look, Query& query
     return !query.started.add(first_pose(start, look.turn_rad));
   });
   if (peaks.empty()) return;
-  ImprovedPose best{peaks[0].query_in_node, peaks[0].votes, {}};
-  if (options_.stages.refine) {
-    const auto refined = refine(look.view, lines, peaks, query.room, query.leader);
-    if (!refined) return;
-    best = *refined;
+  std::vector<ImprovedPose> found;
+  if (!options_.stages.refine) {
+    found.push_back({peaks[0].query_in_node, peaks[0].votes, {}});
+  } else if (query.is_thorough) {
+    for (const VotePeak& peak : peaks) {
+      found.push_back(refine(look.view, lines, peak.query_in_node, query.room));
+    }
+  } else if (const auto best = refine_best(look.view, lines, peaks, query.room, query.leader)) {
+    found.push_back(*best);
   }
-  query.found.push_back(
-      {first_pose(compose(map_.nodes[node].pose, best.pose), look.turn_rad), node, best.score});
+  for (const ImprovedPose& pose : found) {
+    const Pose2D at = compose(map_.nodes[node].pose, pose.pose);
+    query.found.push_back({first_pose(at, look.turn_rad), node, pose.score});
+  }
 }
 
 /// Compares poses from which the map looks as it does from `pose`. The nodes that rank best for a

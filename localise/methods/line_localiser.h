@@ -57,6 +57,13 @@ class LineLocaliser : public Localiser {
   struct Query;
 
   LocalisationAnswer search(std::span<const std::vector<RankedNode>> ranked, Query& query) const;
+  bool fits_poorly(const Query& query) const;
+  void search_thoroughly(std::span<const std::vector<RankedNode>> ranked,
+                         int end,
+                         Query& query) const;
+  int ranked_alike(const Pose2D& pose,
+                   std::span<const std::vector<RankedNode>> ranked,
+                   const Query& query) const;
   void candidates(
       const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
   void wide_candidates(const Seen& seen,

@@ -75,6 +75,7 @@ struct LineLocaliser::Query {
   std::map<int, std::vector<PlanUpright>> uprights;     // of these
   TriedPoses started{0.12, 0.05}, finals{0.15, 0.1};    // from which poses were refined, compared
   TriedPoses doubted{0.5, 0.2};                         // whose rivals were compared
+  bool is_thorough = false;                             // no start is given up
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
   std::map<Pose2D, JudgedPose, PoseOrder> judged;

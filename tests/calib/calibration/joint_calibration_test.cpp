@@ -263,6 +263,20 @@ TEST_F(BadPairs, AreNamed) {
       << said(bad);
 }
 
+TEST_F(BadPairs, SoAreOptionsThatAreNoNumbers) {
+  for (const double bad : {-1.0, std::nan("")}) {
+    const std::string scale =
+        error_message([&] { calibrate_from_pairs(pairs_, known_, {.pair_sigma_scale = bad}); });
+    EXPECT_EQ(scale.substr(0, 47), "pair_sigma_scale: it is not a number from 0 on;") << scale;
+    CombineOptions options;
+    options.min_p = bad;
+    const std::string p = error_message([&] {
+      combine({as_input(known_), {"pairs", {}, pairs_}}, options);
+    });
+    EXPECT_EQ(p.substr(0, 38), "min_p: it is not a number from 0 to 1;") << p;
+  }
+}
+
 TEST_F(BadPairs, SomeSwappedImagePairsAreNamed) {
   PairObservations bad = pairs_;
   for (std::size_t i = 0; i < 100; ++i) {  // of image pair 3

@@ -192,7 +192,7 @@ TEST(RigDifference, RefusesACovarianceOfOtherParameters) {
   wrong.names[0] = "left.g";
   EXPECT_NE(test::error_message([&] {
               rig_difference(a.rig, wrong, a.rig, *a.covariance);
-            }).find("first rig: its covariance does not match the rig's parameters"),
+            }).find("first rig: the covariance's names are not those of the rig's parameters"),
             std::string::npos);
 }
 

@@ -586,6 +586,16 @@ TEST(Propagation, CamerasAndCovariancesThatCannotBeAreRefused) {
               ProjectionUncertainty(rig, negative, 0, PointFixedTo::camera);
             }).find("the variance of"),
             std::string::npos);
+  RigAndBoards joint = rig_and_boards(nominal_estimate(), CovarianceChoice::honest);
+  joint.rig_covariance = negative;
+  for (const auto frame : {TriangulationFrame::rig, TriangulationFrame::stabilised}) {
+    EXPECT_NE(error_output([&] { TriangulationUncertainty(joint, frame); }).find("the variance of"),
+              std::string::npos);
+  }
+  EXPECT_NE(error_output([&] {
+              ProjectionUncertainty(joint, 0, PointFixedTo::boards);
+            }).find("the variance of"),
+            std::string::npos);
   for (const int other : {-1, 0, 2}) {
     EXPECT_NE(error_output([&] {
                 TriangulationUncertainty(rig, sound, other);

@@ -2,9 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
 """What `lines` states of its errors, and how often it is wrong, in buildings that repeat: a hall whose
-contents are the same after half a turn, a corridor of equal doors, and a hall of bays that are furnished alike.
+contents are the same after half a turn, a corridor of equal doors, a hall of bays that are furnished alike, and a
+long corridor whose stretches resemble each other without repeating.
 
-    repeating_buildings.py PROGRAM [--trials 300] [--seed 1] [--halls 1] [--corridors 20x40] [--bays 1x5] [--repeats P]
+    repeating_buildings.py PROGRAM [--trials 300] [--seed 1] [--protocol near_path] [--repeats P]
+                           [--halls 1] [--corridors 20x40] [--bays 1x5] [--stretches SEEDS]
 
 Prints a line for each building, kind of map and stated error: queries answered, and of these wrong.
 """
@@ -89,6 +91,18 @@ def bays(seed, count, bay_m=6, width_m=6):
     return mesh
 
 
+def stretches(seed, length_m=120, width_m=2):
+    """Equal doors at uneven gaps, on either side of a corridor."""
+    chance, mesh = random.Random(seed), Mesh()
+    mesh.box(0, 0, 0, length_m, width_m, HEIGHT_M)
+    for y0, y1 in ((0, 0.03), (width_m - 0.03, width_m)):
+        x = chance.uniform(0.5, 3)
+        while x < length_m - 1.2:
+            mesh.box(x, y0, 0, x + 0.9, y1, 2.1)
+            x += chance.uniform(2.2, 7)
+    return mesh
+
+
 def seeds(text):
     """1,4-6 as numbers."""
     ranges = [part.split('-') for part in text.split(',') if part]
@@ -105,6 +119,8 @@ def buildings(options):
     for text in filter(None, options.bays.split(',')):
         seed, count = text.split('x')
         yield f'bays {text}', bays(int(seed), int(count))
+    for seed in seeds(options.stretches):
+        yield f'stretches {seed}', stretches(seed)
 
 
 def main():
@@ -116,6 +132,8 @@ def main():
     parser.add_argument('--halls', default='1', help='seeds of halls, as 1,4-6')
     parser.add_argument('--corridors', default='20x40', help='doors a side x length in metres')
     parser.add_argument('--bays', default='1x5', help='seed x number of bays')
+    parser.add_argument('--stretches', default='', help='seeds of long corridors, as 1,4-6')
+    parser.add_argument('--protocol', default='near_path', help='of the queries')
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
     print(f'{"building":<16}{"headings":>10}{"stated %":>10}{"answered":>10}{"wrong":>8}{"wrong %":>9}{"best %":>9}')
@@ -129,7 +147,7 @@ def main():
             subprocess.run([program, 'world', 'import', f'{file}.obj', '--up', 'z', '--unit', 'm', '-o',
                             f'{file}.world.toml', '-q'], cwd=folder, check=True, capture_output=True)
             (folder / 's.toml').write_text(
-                f'[study]\ntrials = {options.trials}\nseed = {options.seed}\nprotocol = "near_path"\n'
+                f'[study]\ntrials = {options.trials}\nseed = {options.seed}\nprotocol = "{options.protocol}"\n'
                 f'[world]\nfile = "{file}.world.toml"\n{prior}[sweep]\n"map.headings" = ["path", 8]\n'
                 f'"localiser.max_error_rate" = {list(STATED)}\n')
             run = subprocess.run([program, 'study', 's.toml', '-o', file, '-q', '--json'], cwd=folder,

@@ -22,7 +22,7 @@ struct CombineInput {
 };
 
 struct CombineOptions {
-  double min_p = 1e-4;            ///< an input with a smaller p-value is excluded …
+  double min_p = 1e-4;            ///< in [0, 1]: an input with a smaller p-value is excluded …
   bool keep_disagreeing = false;  ///< … unless this is set
   JointOptions joint;
 };

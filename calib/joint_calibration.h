@@ -29,7 +29,7 @@ struct JointEvidence {
 
 struct JointOptions {
   std::vector<HeldParameter> held;
-  /// Multiplies the stated noise of the pairs; 0: estimated from their residuals.
+  /// Multiplies the stated noise of the pairs, from 0 on; 0: estimated from their residuals.
   double pair_sigma_scale = 0;
   bool reject_outliers = true;  ///< of the pairs
   /// The noise is known to be white (simulated): use the bound as covariance.

@@ -69,8 +69,8 @@ struct LocaliserStages {
   bool align = true;    ///< votes of vertical lines give each candidate's pose; else its node's
   bool refine = true;   ///< the candidate's lines are compared in the image, and its pose improved
   bool compare = true;  ///< the best are compared with the lines of neighbouring nodes merged
-  /// Where that leaves doubts, more candidates are tried; where it leaves none, the places that
-  /// look like the answer in the map.
+  /// Where that leaves doubts, more candidates are tried; where it leaves none, those that rank as
+  /// the answer's own, and the places that look like the answer in the map.
   bool deepen = true;
 };
 
@@ -81,7 +81,8 @@ LocaliserStages localiser_stages(std::string_view words);
 
 struct LocaliserOptions {
   std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate
-  int candidates = 256;         ///< of the best-ranked poses; `lines` tries 16 of them first
+  int candidates = 256;         ///< of the best-ranked poses; `lines` tries 16 of them first,
+                                ///< and more where these leave doubts or rank alike
   int min_lines = 3;            ///< minimum number of lines in space for an answer
   /// `lines` abstains (unsure) where an error is more probable than this; 1: an answer is never
   /// unsure.

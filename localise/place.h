@@ -25,6 +25,8 @@ double distance_m(const Pose2D& a, const Pose2D& b);
 /// Heading difference a - b in (-pi, pi]: positive if a is counter-clockwise from b, pi if they are
 /// opposite.
 double heading_difference_rad(const Pose2D& a, const Pose2D& b);
+/// Whether two poses differ by less than so much in position and in heading.
+bool is_close_to(const Pose2D& a, const Pose2D& b, double within_m, double within_rad);
 /// Composes `step`, given in the frame of `from`, into the world frame.
 Pose2D compose(const Pose2D& from, const Pose2D& step);
 /// The step that leads from one pose to another, in the frame of `from`: the inverse of compose().

@@ -22,18 +22,18 @@ void check_covariance(const Eigen::MatrixXd& matrix,
   }
 }
 
-void check_names(const Covariance& covariance, const Rig& rig, const std::string& place) {
-  if (covariance.names == parameter_names(rig)) return;
-  throw Error(place, "the covariance's names are not those of the rig's parameters",
-              "give it in the order of parameter_names; rename cameras by rename_cameras");
-}
-
 void check_covariance(const Eigen::MatrixXd& matrix, const Rig& rig, const std::string& place) {
   if (matrix.rows() != parameter_count(rig) || matrix.cols() != matrix.rows()) {
     throw Error(place, "the covariance does not match the rig's parameters",
                 "give one row and column per parameter");
   }
   check_covariance(matrix, parameter_names(rig), place);
+}
+
+void check_names(const Covariance& covariance, const Rig& rig, const std::string& place) {
+  if (covariance.names == parameter_names(rig)) return;
+  throw Error(place, "the covariance's names are not those of the rig's parameters",
+              "give it in the order of parameter_names; rename cameras by rename_cameras");
 }
 
 }  // namespace vernier::internal

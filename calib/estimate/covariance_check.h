@@ -17,10 +17,10 @@ void check_covariance(const Eigen::MatrixXd& matrix,
                       const std::vector<std::string>& names,
                       const std::string& place);
 
+/// The same for all parameters of a rig.
+void check_covariance(const Eigen::MatrixXd& matrix, const Rig& rig, const std::string& place);
+
 /// Throws Error (`place`) unless a covariance's names are those of the rig's parameters, in order.
 void check_names(const Covariance& covariance, const Rig& rig, const std::string& place);
-
-/// The same as above for all parameters of a rig.
-void check_covariance(const Eigen::MatrixXd& matrix, const Rig& rig, const std::string& place);
 
 }  // namespace vernier::internal

@@ -64,6 +64,17 @@ Json swept_keys_json(const StudyResults& results) {
   return keys;
 }
 
+/// What a view shows; no sensed lines if a source has failed.
+std::string view_words(std::size_t visible, std::size_t sensed, const std::string& failure) {
+  const std::string of_view =
+      fmt::format("Left view of trial 0: {} edges visible in both cameras", visible);
+  if (failure.empty()) {
+    return fmt::format("{}, {} sensed after applying all error sources.", of_view, sensed);
+  }
+  return fmt::format("{}. What was sensed is not shown, since a source of error failed: {}",
+                     of_view, failure);
+}
+
 }  // namespace
 
 std::size_t listed_of_a_cell(const Study& study) {
@@ -163,17 +174,12 @@ Json report_view(const Study& study) {
     row.push_back(std::abs(disparity - truth) > 2 ? 1 : 0);
     sensed.push_back(std::move(row));
   }
-  return {
-      {"camera_size_px", both["camera_size_px"]},
-      {"pose", both["pose"]},
-      {"true", both["true"]["left"]},
-      {"sensed", sensed},
-      {"corners", both["corners"]["left"]},
-      {"words",
-       fmt::format("Left view of trial 0: {} edges visible in both cameras, {}.", seen.edges.size(),
-                   failure.empty() ? fmt::format("{} sensed after applying all error sources",
-                                                 sighting.segments.size())
-                                   : "none shown as sensed, since a source failed: " + failure)}};
+  return {{"camera_size_px", both["camera_size_px"]},
+          {"pose", both["pose"]},
+          {"true", both["true"]["left"]},
+          {"sensed", sensed},
+          {"corners", both["corners"]["left"]},
+          {"words", view_words(seen.edges.size(), sighting.segments.size(), failure)}};
 }
 
 bool has_script(const fs::path& folder) { return fs::is_regular_file(folder / script_file); }

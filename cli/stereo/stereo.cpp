@@ -185,11 +185,12 @@ void check_result(const StereoArguments& options,
     session.add_trust_warning(
         "no segment could be reconstructed; segments.json gives the reason for each");
   } else if (depth.reliable == 0) {
-    session.add_trust_warning(
-        fmt::format("all {} segments lie farther than {:g} m and count as unreliable: check the "
-                    "focal length and "
-                    "the baseline, or give a larger --max-depth-m",
-                    depth.placed, options.space.max_depth_m));
+    session.add_trust_warning(fmt::format(
+        "no segment lies nearer than {:g} m, so that all count as unreliable: {}",
+        options.space.max_depth_m,
+        depth.linear == 0
+            ? "the scene is too far for the baseline, or that or the focal length is wrong"
+            : "check the baseline and the focal length, or give a larger --max-depth-m"));
   } else if (depth.linear < (1 - max_uncertain) * depth.placed) {
     session.add_trust_warning(fmt::format(
         "the depth of {} of {} segments is uncertain by more than 10 %: {}; {}",

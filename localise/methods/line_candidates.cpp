@@ -72,13 +72,17 @@ std::optional<ImprovedPose> refine_best(const ComparedView& view,
 
 }  // namespace
 
-void LineLocaliser::candidates(
-    const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const {
+void LineLocaliser::candidates(const Seen& seen,
+                               std::span<const RankedNode> ranked,
+                               int from,
+                               int to,
+                               Starts starts,
+                               Query& query) const {
   const auto end = std::min<std::size_t>(to, ranked.size());
   for (std::size_t i = from; i < end; ++i) {
     const Pose2D pose = compose(map_.nodes[ranked[i].node].pose, ranked[i].query_in_node);
     if (options_.stages.align) {
-      near_pose(pose, seen, query);
+      near_pose(pose, seen, starts, query);
     } else {
       query.found.push_back({first_pose(pose, seen.turn_rad), ranked[i].node, ranked[i].score});
     }
@@ -114,12 +118,15 @@ void LineLocaliser::wide_candidates(const Seen& seen,
   std::stable_sort(voted.begin(), voted.end(),
                    [](const Voted& a, const Voted& b) { return a.votes > b.votes; });
   const auto most = std::min(most_voted, voted.size());
-  for (std::size_t i = 0; i < most; ++i) near_pose(voted[i].pose, seen, query);
+  for (std::size_t i = 0; i < most; ++i) near_pose(voted[i].pose, seen, Starts::best, query);
 }
 
 /// Adds the best pose around a rough one, by votes and rough comparison with the merged lines of
-/// the nearest node; in a thorough search one for each peak of the votes, however they compare.
-void LineLocaliser::near_pose(const Pose2D& pose, const Seen& look, Query& query) const {
+/// the nearest node, or one from each peak of the votes, however they compare.
+void LineLocaliser::near_pose(const Pose2D& pose,
+                              const Seen& look,
+                              Starts starts,
+                              Query& query) const {
   const int node = grid_.nearest(pose);
   if (node < 0) return;
   const SpaceLines& lines = lines_around(node, query);
@@ -135,16 +142,16 @@ void LineLocaliser::near_pose(const Pose2D& pose, const Seen& look, Query& query
   std::vector<ImprovedPose> found;
   if (!options_.stages.refine) {
     found.push_back({peaks[0].query_in_node, peaks[0].votes, {}});
-  } else if (query.is_thorough) {
+  } else if (starts == Starts::all) {
     for (const VotePeak& peak : peaks) {
       found.push_back(refine(look.view, lines, peak.query_in_node, query.room));
     }
   } else if (const auto best = refine_best(look.view, lines, peaks, query.room, query.leader)) {
     found.push_back(*best);
   }
-  for (const ImprovedPose& pose : found) {
-    const Pose2D at = compose(map_.nodes[node].pose, pose.pose);
-    query.found.push_back({first_pose(at, look.turn_rad), node, pose.score});
+  for (const ImprovedPose& improved : found) {
+    const Pose2D at = compose(map_.nodes[node].pose, improved.pose);
+    query.found.push_back({first_pose(at, look.turn_rad), node, improved.score});
   }
 }
 
@@ -164,7 +171,7 @@ void LineLocaliser::compare_rivals(const Pose2D& pose, Query& query) const {
     const Pose2D there =
         compose(compose(map_.nodes[other.node].pose, other.query_in_node), in_node);
     if (distance_m(there, pose) < same_place_m || !tried.add(there)) continue;
-    near_pose({there.x_m, there.y_m, there.heading_rad + look.turn_rad}, look, query);
+    near_pose({there.x_m, there.y_m, there.heading_rad + look.turn_rad}, look, Starts::best, query);
     if (++rivals == most_rivals) break;
   }
   compare_best(most_rivals, query);

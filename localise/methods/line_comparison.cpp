@@ -123,14 +123,12 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   LocalisationAnswer result;
   PosteriorOptions posterior;
   posterior.off_map = off_map;
-  double observations = 0;
-  for (const Seen& look : query.looks) observations += look.view.observations;
   EvidenceBetween between;
   if (options_.stages.compare && options_.repeats > 0) {
     between = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); };
   }
   const std::vector<WeightedMode> modes =
-      pose_posterior(query.compared, observations, map_.nodes.size(), posterior, between);
+      pose_posterior(query.compared, observations_of(query), map_.nodes.size(), posterior, between);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.

@@ -5,23 +5,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <map>
-#include <numbers>
-#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "localise/localiser.h"
-#include "localise/map/merged_lines.h"
 #include "localise/methods/line_query.h"
 #include "localise/place.h"
 #include "localise/place/repeated_lines.h"
 #include "localise/place/space_lines.h"
-#include "localise/place/view_camera.h"
 #include "localise/posterior/pose_posterior.h"
 #include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
@@ -38,8 +33,9 @@ constexpr std::size_t sparse_lines = 60;
 constexpr int few_finalists = 3, many_finalists = 20;
 constexpr int first_candidates = 16;      ///< the others follow where these leave doubts
 constexpr double sure_error_rate = 0.01;  ///< unless a smaller one is asked for
-/// Where the best pose is worse than by so many nats an observation, a view is far from what the
-/// map recorded at any place, its own included, and what finds poses quickly may have missed that.
+/// Where even the best pose scores below minus so many nats an observation, a view is far from what
+/// the map recorded anywhere, its own place included, and the first look at each candidate may have
+/// given that up (0.8 and 1.3 did no better on offices of seeds 1 to 20).
 constexpr double poor_misfit = 1;
 
 }  // namespace
@@ -113,14 +109,14 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
   LocalisationAnswer result;
   result.status = LocalisationStatus::no_match;
   int tried = 0;
-  bool was_thorough =
-      !(options_.stages.deepen && options_.stages.refine && options_.stages.compare);
   const auto try_to = [&](int end) {
     for (std::size_t i = 0; i < query.looks.size(); ++i) {
-      candidates(query.looks[i], ranked[i], tried, end, query);
+      candidates(query.looks[i], ranked[i], tried, end, Starts::best, query);
     }
     tried = std::max(tried, end);
   };
+  const bool deepens = options_.stages.deepen && options_.stages.align;
+  bool is_first = deepens && options_.stages.refine && options_.stages.compare;
   for (const Round& round : rounds) {
     try_to(round.candidates);
     for (std::size_t i = 0; round.wide && i < query.looks.size(); ++i) {
@@ -129,25 +125,22 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
     compare_best(round.finalists, query);
     if (query.compared.empty()) continue;
     result = answer(query, 0);
-    if (!was_thorough && fits_poorly(query)) {
-      was_thorough = true;
-      search_thoroughly(ranked, tried, query);
+    if (std::exchange(is_first, false) && fits_poorly(query)) {
+      search_from_all_starts(ranked, tried, query);
       result = answer(query, 0);
     }
-    if (!options_.stages.deepen || !options_.stages.align) {
-      if (result.probability >= sure) break;
-      continue;
+    // A sure answer is compared with what may be the true place as well.
+    while (deepens && result.probability >= sure) {
+      if (const int alike = ranked_alike(result.pose, ranked, query); alike > tried) {
+        try_to(alike);
+        compare_best(many_finalists, query);
+      } else if (query.doubted.add(result.pose)) {
+        compare_rivals(result.pose, query);
+      } else {
+        break;
+      }
+      result = answer(query, 0);
     }
-    for (int alike = 0; result.probability >= sure; result = answer(query, 0)) {
-      alike = ranked_alike(result.pose, ranked, query);
-      if (alike <= tried) break;
-      try_to(alike);
-      compare_best(round.finalists, query);
-    }
-    if (result.probability < sure) continue;
-    if (!query.doubted.add(result.pose)) break;
-    compare_rivals(result.pose, query);
-    result = answer(query, 0);
     if (result.probability >= sure) break;
   }
   // More candidates do not help against a place that the map does not hold.
@@ -157,46 +150,48 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
 
 /// Whether no pose that was compared explains the looks.
 bool LineLocaliser::fits_poorly(const Query& query) const {
-  double observations = 0;
-  for (const Seen& look : query.looks) observations += look.view.observations;
+  const double least = -poor_misfit * observations_of(query);
   return std::none_of(query.compared.begin(), query.compared.end(),
-                      [&](const Hypothesis& h) { return h.score > -poor_misfit * observations; });
+                      [least](const Hypothesis& h) { return h.score > least; });
 }
 
 /// Tries the first candidates again, from each peak of the votes, and compares the best in full.
-void LineLocaliser::search_thoroughly(std::span<const std::vector<RankedNode>> ranked,
-                                      int end,
-                                      Query& query) const {
-  query.is_thorough = true;
-  query.started = Query{}.started;
+void LineLocaliser::search_from_all_starts(std::span<const std::vector<RankedNode>> ranked,
+                                           int end,
+                                           Query& query) const {
+  query.started.clear();
   for (std::size_t i = 0; i < query.looks.size(); ++i) {
-    candidates(query.looks[i], ranked[i], 0, end, query);
+    candidates(query.looks[i], ranked[i], 0, end, Starts::all, query);
   }
   compare_best(many_finalists, query);
-  query.is_thorough = false;
 }
 
-/// How many candidates rank nearly as well as that of a pose: a view of a building whose stretches
-/// resemble each other may fit one of the first well, and its own place, a little further down the
-/// list, better (16 of 19 wrong answers at a stated 1 % in corridors of doors at uneven gaps).
+/// How many candidates rank nearly as well as that of a pose, of the look with the most; all, if it
+/// is none of them. A view of a building whose stretches resemble each other may fit one of the
+/// first well, and its own place, a little further down the list, better (16 of 19 wrong answers at
+/// a stated 1 % in corridors of doors at uneven gaps).
 int LineLocaliser::ranked_alike(const Pose2D& pose,
                                 std::span<const std::vector<RankedNode>> ranked,
                                 const Query& query) const {
-  constexpr double near_m = 0.8, near_rad = 0.4;
+  constexpr double near_m = 1, near_rad = 0.4;  // votes and steps move a candidate by less
   std::ptrdiff_t most = 0;
   for (std::size_t i = 0; i < query.looks.size(); ++i) {
-    if (ranked[i].empty()) continue;
     const Pose2D here = turned(pose, query.looks[i].turn_rad);
     const auto own = std::find_if(ranked[i].begin(), ranked[i].end(), [&](const RankedNode& r) {
-      const Pose2D at = compose(map_.nodes[r.node].pose, r.query_in_node);
-      return distance_m(at, here) < near_m && std::abs(heading_difference_rad(at, here)) < near_rad;
+      return is_close_to(compose(map_.nodes[r.node].pose, r.query_in_node), here, near_m, near_rad);
     });
-    const double least =
-        (own == ranked[i].end() ? ranked[i].front() : *own).score - ranker_->score_spread();
-    const auto is_alike = [least](const RankedNode& r) { return r.score >= least; };
+    const auto is_alike = [&](const RankedNode& r) {
+      return own == ranked[i].end() || r.score >= own->score - ranker_->alike_within();
+    };
     most = std::max(most, std::count_if(ranked[i].begin(), ranked[i].end(), is_alike));
   }
   return static_cast<int>(most);
+}
+
+double LineLocaliser::observations_of(const Query& query) {
+  double sum = 0;
+  for (const Seen& look : query.looks) sum += look.view.observations;
+  return sum;
 }
 
 bool LineLocaliser::is_plain(const Query& query) const {

@@ -51,6 +51,11 @@ class LineLocaliser : public Localiser {
     const SpaceLines* lines;
     Pose2D pose_in_node;
   };
+  /// From which peaks of the votes the pose of a candidate is looked for.
+  enum class Starts {
+    best,  ///< the best, unless it is far behind other candidates'
+    all,
+  };
   struct JudgedPose;
   struct RecordedView;
   /// Memory and intermediate results of one query.
@@ -58,19 +63,24 @@ class LineLocaliser : public Localiser {
 
   LocalisationAnswer search(std::span<const std::vector<RankedNode>> ranked, Query& query) const;
   bool fits_poorly(const Query& query) const;
-  void search_thoroughly(std::span<const std::vector<RankedNode>> ranked,
-                         int end,
-                         Query& query) const;
+  void search_from_all_starts(std::span<const std::vector<RankedNode>> ranked,
+                              int end,
+                              Query& query) const;
   int ranked_alike(const Pose2D& pose,
                    std::span<const std::vector<RankedNode>> ranked,
                    const Query& query) const;
-  void candidates(
-      const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
+  void candidates(const Seen& seen,
+                  std::span<const RankedNode> ranked,
+                  int from,
+                  int to,
+                  Starts starts,
+                  Query& query) const;
   void wide_candidates(const Seen& seen,
                        std::span<const RankedNode> ranked_before,
                        Query& query) const;
   void compare_rivals(const Pose2D& pose, Query& query) const;
-  void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;
+  void near_pose(const Pose2D& pose, const Seen& look, Starts starts, Query& query) const;
+  static double observations_of(const Query& query);
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
   JointAgreement joint_agreement(const Pose2D& first,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -35,13 +34,13 @@ class TriedPoses {
   /// False if one of them is close.
   bool add(const Pose2D& pose) {
     const auto is_close = [&](const Pose2D& other) {
-      return distance_m(other, pose) < distance_m_ &&
-             std::abs(heading_difference_rad(other, pose)) < heading_rad_;
+      return is_close_to(other, pose, distance_m_, heading_rad_);
     };
     if (std::any_of(tried_.begin(), tried_.end(), is_close)) return false;
     tried_.push_back(pose);
     return true;
   }
+  void clear() { tried_.clear(); }
 
  private:
   double distance_m_, heading_rad_;
@@ -75,7 +74,6 @@ struct LineLocaliser::Query {
   std::map<int, std::vector<PlanUpright>> uprights;     // of these
   TriedPoses started{0.12, 0.05}, finals{0.15, 0.1};    // from which poses were refined, compared
   TriedPoses doubted{0.5, 0.2};                         // whose rivals were compared
-  bool is_thorough = false;                             // no start is given up
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
   std::map<Pose2D, JudgedPose, PoseOrder> judged;

@@ -46,6 +46,10 @@ double heading_difference_rad(const Pose2D& a, const Pose2D& b) {
   return turn <= -std::numbers::pi ? std::numbers::pi : turn;
 }
 
+bool is_close_to(const Pose2D& a, const Pose2D& b, double within_m, double within_rad) {
+  return distance_m(a, b) < within_m && std::abs(heading_difference_rad(a, b)) < within_rad;
+}
+
 Pose2D compose(const Pose2D& from, const Pose2D& step) {
   const double c = std::cos(from.heading_rad), s = std::sin(from.heading_rad);
   return {from.x_m + c * step.x_m - s * step.y_m, from.y_m + s * step.x_m + c * step.y_m,

@@ -107,8 +107,7 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   std::vector<WeightedMode> modes;
   for (const Hypothesis& h : sorted) {
     const bool known = std::any_of(modes.begin(), modes.end(), [&](const WeightedMode& m) {
-      return distance_m(m.best.pose, h.pose) < same_m &&
-             std::abs(heading_difference_rad(m.best.pose, h.pose)) < same_rad;
+      return is_close_to(m.best.pose, h.pose, same_m, same_rad);
     });
     if (!known && modes.size() < most_modes) modes.push_back({h, 0});
   }

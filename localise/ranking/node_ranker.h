@@ -27,8 +27,8 @@ class NodeRanker {
   virtual std::vector<RankedNode> rank(const PlaceView& query, int most) const = 0;
   /// The score, for a view of the map's own, below which a node is not taken for its place.
   virtual double least_rival_score() const { return 0; }
-  /// A node whose score is less than that below another's may still be the place of the view.
-  virtual double score_spread() const { return 0; }
+  /// Scores that differ by less do not tell places apart.
+  virtual double alike_within() const { return 0; }
 };
 
 /// `view` (ViewRanker), `pgh` or `pgh_aggregate` (HistogramRanker). The map must outlive it. Throws

@@ -202,7 +202,7 @@ class Made(Case):
     def test_a_scene_beyond_the_greatest_depth_is_doubted(self):
         done = cli_test.vernier(*self.arguments(), *self.values(), '--max-depth-m', 0.01, '--json')
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertRegex(json.loads(done.stdout)['doubts'][-1], 'lie farther than 0.01 m .*--max-depth-m$')
+        self.assertRegex(json.loads(done.stdout)['doubts'][-1], '^no segment lies nearer than 0.01 m, .*--max-depth-m$')
 
     def test_vertical_disparity_is_doubted_in_silence_too(self):
         for down in (1, 3):

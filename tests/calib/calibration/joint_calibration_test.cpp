@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <limits>
 
 #include "calib/base/atomic_file.h"
 #include "calib/calibrate.h"
@@ -264,7 +265,7 @@ TEST_F(BadPairs, AreNamed) {
 }
 
 TEST_F(BadPairs, SoAreOptionsThatAreNoNumbers) {
-  for (const double bad : {-1.0, std::nan("")}) {
+  for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     const std::string scale =
         error_message([&] { calibrate_from_pairs(pairs_, known_, {.pair_sigma_scale = bad}); });
     EXPECT_EQ(scale.substr(0, 47), "pair_sigma_scale: it is not a number from 0 on;") << scale;

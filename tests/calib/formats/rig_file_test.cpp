@@ -358,7 +358,8 @@ TEST(RigFile, CovariancesThatReadingRefusesAreNotWritten) {
       << complaint(e);
   e = estimate();
   e.covariance->names[0] = "left.g_px";
-  EXPECT_NE(complaint(e).find("rig.covariance: the covariance's names"), std::string::npos) << complaint(e);
+  EXPECT_NE(complaint(e).find("rig.covariance: the covariance's names"), std::string::npos)
+      << complaint(e);
   e = estimate();
   e.covariance->matrix = Eigen::MatrixXd::Identity(3, 3);
   EXPECT_NE(complaint(e).find("does not match the rig's parameters"), std::string::npos);

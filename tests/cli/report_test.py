@@ -13,6 +13,7 @@ import unittest
 import xml.etree.ElementTree
 
 PROGRAM = None
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 STUDY = '''[study]
 trials = 2
 protocol = "near_path"
@@ -57,6 +58,26 @@ class Report(unittest.TestCase):
         self.works('study', 'merge', 'my results', '-o', 'all')
         self.works('report', 'all', '--no-proof', '-o', 'report.html')
         self.assertIn("vernier study merge 'my results' -o all", self.data()['study']['commands'])
+
+    def test_a_source_that_fails_draws_nothing_sensed(self):
+        shutil.copy(ROOT / 'docs/examples/own_source.py', self.folder)
+        wrapper = self.folder / 'source.py'
+        wrapper.write_text('import os, runpy, sys\n'
+                           'if os.path.exists("broken"): sys.exit("no sensor today")\n'
+                           'runpy.run_path("own_source.py", run_name="__main__")\n')
+        (self.folder / 'small.toml').write_text(
+            STUDY + f'[sources]\ncommand = "{sys.executable} source.py"\n')
+        self.works('study', 'small.toml', '-o', 'results', '-q')
+        self.works('report', 'results', '--no-proof', '-o', 'report.html')
+        view = self.data()['view']
+        self.assertGreater(len(view['sensed']), 20)
+        self.assertRegex(view['words'], r'[0-9]+ sensed after applying all error sources\.$')
+        (self.folder / 'broken').touch()
+        self.works('report', 'results', '--no-proof', '-o', 'report.html')
+        view = self.data()['view']
+        self.assertEqual(view['sensed'], [])
+        self.assertIn('What was sensed is not shown, since a source of error failed: ', view['words'])
+        self.assertIn('no sensor today', view['words'])
 
     def test_several_studies_share_a_page(self):
         for name, seed in (('one', 1), ('two', 2)):

@@ -289,9 +289,11 @@ class Made(Case):
         words = self.arguments(rectified=False)
         done = self.works(*words, '--rig', self.opencv_rig())
         self.assertNotIn('millimetres', done.stderr)
-        done = self.works(*words, '--rig', self.opencv_rig(1000 * BASELINE_M))
+        done = cli_test.vernier(*words, '--rig', self.opencv_rig(1000 * BASELINE_M))
+        self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn('is 100 m from the first; if the file is in millimetres, convert it',
                       done.stderr)
+        self.assertIn('no segment lies nearer than 30 m', done.stderr)
 
     def test_rows_that_cannot_be_checked_are_told(self):
         for name, rows in zip(('left', 'right'), pair()):

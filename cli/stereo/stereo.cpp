@@ -189,7 +189,7 @@ void check_result(const StereoArguments& options,
         "no segment lies nearer than {:g} m, so that all count as unreliable: {}",
         options.space.max_depth_m,
         depth.linear == 0
-            ? "the scene is too far for the baseline, or that or the focal length is wrong"
+            ? "the scene is too far for the baseline, or a value of the cameras is wrong"
             : "check the baseline and the focal length, or give a larger --max-depth-m"));
   } else if (depth.linear < (1 - max_uncertain) * depth.placed) {
     session.add_trust_warning(fmt::format(

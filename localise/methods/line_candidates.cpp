@@ -139,19 +139,19 @@ void LineLocaliser::near_pose(const Pose2D& pose,
     return !query.started.add(first_pose(start, look.turn_rad));
   });
   if (peaks.empty()) return;
-  std::vector<ImprovedPose> found;
+  const auto add = [&](const Pose2D& in_node, double score) {
+    const Pose2D at = compose(map_.nodes[node].pose, in_node);
+    query.found.push_back({first_pose(at, look.turn_rad), node, score});
+  };
   if (!options_.stages.refine) {
-    found.push_back({peaks[0].query_in_node, peaks[0].votes, {}});
+    add(peaks[0].query_in_node, peaks[0].votes);
   } else if (starts == Starts::all) {
     for (const VotePeak& peak : peaks) {
-      found.push_back(refine(look.view, lines, peak.query_in_node, query.room));
+      const ImprovedPose refined = refine(look.view, lines, peak.query_in_node, query.room);
+      add(refined.pose, refined.score);
     }
   } else if (const auto best = refine_best(look.view, lines, peaks, query.room, query.leader)) {
-    found.push_back(*best);
-  }
-  for (const ImprovedPose& improved : found) {
-    const Pose2D at = compose(map_.nodes[node].pose, improved.pose);
-    query.found.push_back({first_pose(at, look.turn_rad), node, improved.score});
+    add(best->pose, best->score);
   }
 }
 

@@ -45,7 +45,8 @@ struct LocalisationAnswer {
   double probability = 0;
   bool states_probability() const { return probability > 0; }
   std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
-  /// The turn of a further look that tells the modes apart best; 0 if there is nothing to tell.
+  /// The turn of a further look that tells the modes apart best, or places that rank best where
+  /// there are no two modes; 0 where the map tells nothing, or the answer is sure.
   double next_turn_rad = 0;
   std::string failure;  ///< why, if it failed
   /// CPU time that another process spent on it, to a tick of the system's scheduler (some ms).

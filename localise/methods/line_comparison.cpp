@@ -161,14 +161,23 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   return result;
 }
 
-/// The turn at which the two best modes would see what explains the other's view least.
-double LineLocaliser::telling_turn(std::span<const PoseMode> modes, Query& query) const {
-  const auto rival = std::find_if(modes.begin(), modes.end(), [&](const PoseMode& mode) {
-    return distance_m(mode.pose, modes[0].pose) > 1;
-  });
-  if (rival == modes.end()) return 0;
+/// The turn at which the two best modes would see what explains the other's view least. Where there
+/// are no two, places that rank best for the first look stand for them, else any. 0 if none tells.
+double LineLocaliser::telling_turn(std::span<const PoseMode> modes,
+                                   std::span<const RankedNode> ranked,
+                                   Query& query) const {
   constexpr double degree = std::numbers::pi / 180;
   constexpr double known_rad = 15 * degree;  // closer to a look that was taken: nothing new
+  std::vector<Pose2D> poses;
+  for (const PoseMode& mode : modes) poses.push_back(mode.pose);
+  for (const RankedNode& place : ranked) {
+    poses.push_back(compose(map_.nodes[place.node].pose, place.query_in_node));
+  }
+  for (const MapNode& node : map_.nodes) poses.push_back(node.pose);
+  const auto rival = std::find_if(poses.begin(), poses.end(), [&](const Pose2D& pose) {
+    return distance_m(pose, poses[0]) > 1;
+  });
+  if (rival == poses.end()) return 0;
   const ViewCamera& camera = query.looks[0].view.camera;
   double best = 0, least = 0;
   for (const double turn_deg : {20, -20, 45, -45, 90, -90, 135, -135, 180}) {
@@ -176,16 +185,14 @@ double LineLocaliser::telling_turn(std::span<const PoseMode> modes, Query& query
     const bool taken = std::any_of(query.looks.begin(), query.looks.end(), [&](const Seen& look) {
       return std::abs(std::remainder(look.turn_rad - turn, 2 * std::numbers::pi)) < known_rad;
     });
-    const Pose2D here = turned(modes[0].pose, turn), there = turned(rival->pose, turn);
-    const int a = grid_.nearest(here), b = grid_.nearest(there);
-    if (taken || a < 0 || b < 0) continue;
-    const SpaceLines &lines_a = lines_around(a, query), &lines_b = lines_around(b, query);
-    const Pose2D in_a = relative(here, map_.nodes[a].pose);
-    const Pose2D in_b = relative(there, map_.nodes[b].pose);
-    const ComparedView view_a = predicted_view(lines_a, in_a, camera, query.room);
-    const ComparedView view_b = predicted_view(lines_b, in_b, camera, query.room);
-    const double score = agreement(view_a, lines_b, in_b, fine_agreement(), query.room).score +
-                         agreement(view_b, lines_a, in_a, fine_agreement(), query.room).score;
+    const MapPart a = map_part(turned(poses[0], turn), query);
+    const MapPart b = map_part(turned(*rival, turn), query);
+    if (taken || a.node < 0 || b.node < 0) continue;
+    const ComparedView view_a = predicted_view(*a.lines, a.pose_in_node, camera, query.room);
+    const ComparedView view_b = predicted_view(*b.lines, b.pose_in_node, camera, query.room);
+    const AgreementOptions options = fine_agreement();
+    const double score = agreement(view_a, *b.lines, b.pose_in_node, options, query.room).score +
+                         agreement(view_b, *a.lines, a.pose_in_node, options, query.room).score;
     if (score < least) {
       least = score;
       best = turn;

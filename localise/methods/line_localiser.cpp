@@ -73,17 +73,16 @@ LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) co
         {&look.view, compared_view(look.view), plan_uprights(look.view.lines), look.turn_rad});
     lines += look.view.lines.size();
   }
-  LocalisationAnswer nothing;
-  if (static_cast<int>(lines) < options_.min_lines) return nothing;
-  nothing.status = LocalisationStatus::no_match;
-  if (map_.nodes.empty()) return nothing;
+  const bool few = static_cast<int>(lines) < options_.min_lines;
+  LocalisationAnswer result;
+  result.status = few ? LocalisationStatus::too_few_lines : LocalisationStatus::no_match;
+  if (map_.nodes.empty()) return result;
 
   std::vector<std::vector<RankedNode>> ranked;
   for (const Look& look : looks) ranked.push_back(ranker_->rank(look.view, options_.candidates));
-
-  LocalisationAnswer result = search(ranked, query);
-  if (result.status == LocalisationStatus::unsure) {
-    result.next_turn_rad = telling_turn(result.modes, query);
+  if (!few) result = search(ranked, query);
+  if (result.status != LocalisationStatus::answered) {
+    result.next_turn_rad = telling_turn(result.modes, ranked[0], query);
   }
   return result;
 }

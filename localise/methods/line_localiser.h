@@ -101,7 +101,9 @@ class LineLocaliser : public Localiser {
                                          Query& query) const;
   Evidence evidence(const Hypothesis& a, const Hypothesis& b, Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
-  double telling_turn(std::span<const PoseMode> modes, Query& query) const;
+  double telling_turn(std::span<const PoseMode> modes,
+                      std::span<const RankedNode> ranked,
+                      Query& query) const;
 
   const TopologicalMap& map_;
   LocaliserOptions options_;

@@ -33,10 +33,8 @@ using namespace vernier::localise::internal;
 namespace {
 
 using test::camera_view;
+using test::full_room;
 using test::view_of;
-
-/// Rooms of many lines.
-std::vector<PlaceLine> full_room(int seed) { return test::random_room(seed, 300); }
 
 /// Ten rooms side by side, 20 m apart, each seen from its middle.
 TopologicalMap map_of_rooms(int rooms) {
@@ -261,30 +259,6 @@ TEST(LineLocaliser, FindsThePoseToMillimetres) {
     EXPECT_GT(answer.probability, 0.99);
     ASSERT_FALSE(answer.modes.empty());
     EXPECT_EQ(answer.modes[0].probability, answer.probability);
-  }
-}
-
-TEST(LineLocaliser, IsUnsureBetweenTwinsAndSaysWhereToLook) {
-  // Two rooms alike ahead, and different to the left.
-  TopologicalMap map;
-  for (int i = 0; i < 2; ++i) {
-    map.nodes.push_back({{20.0 * i, 0, 0}, camera_view(full_room(7))});
-    map.nodes.push_back({{20.0 * i, 0, std::numbers::pi / 2}, camera_view(full_room(70 + i))});
-  }
-  const auto localiser = make_localiser("lines", map);
-  const LocalisationAnswer answer = localiser->localise(map.nodes[0].view);
-  EXPECT_EQ(answer.status, LocalisationStatus::unsure);
-  EXPECT_NEAR(answer.probability, 0.5, 0.1);
-  ASSERT_GE(answer.modes.size(), 2u);
-  EXPECT_NEAR(answer.next_turn_rad, std::numbers::pi / 2, 0.6);
-
-  for (int i = 0; i < 2; ++i) {
-    const std::vector<Look> looks{{map.nodes[0].view, 0},
-                                  {map.nodes[2 * i + 1].view, std::numbers::pi / 2}};
-    const LocalisationAnswer sure = localiser->localise_looks(looks);
-    EXPECT_EQ(sure.status, LocalisationStatus::answered);
-    EXPECT_LT(distance_m(sure.pose, {20.0 * i, 0, 0}), 0.02);
-    EXPECT_LT(std::abs(heading_difference_rad(sure.pose, {})), 0.01);
   }
 }
 

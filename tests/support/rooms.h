@@ -36,6 +36,9 @@ inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {
   return room;
 }
 
+/// One of many lines.
+inline std::vector<PlaceLine> full_room(std::uint64_t seed) { return random_room(seed, 300); }
+
 /// The same lines seen by a robot at `pose` in their frame.
 inline std::vector<PlaceLine> seen_from(const std::vector<PlaceLine>& room, const Pose2D& pose) {
   const double c = std::cos(pose.heading_rad), s = std::sin(pose.heading_rad);

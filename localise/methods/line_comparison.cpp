@@ -16,6 +16,7 @@
 #include "localise/place/space_lines.h"
 #include "localise/place/view_camera.h"
 #include "localise/posterior/pose_posterior.h"
+#include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
 #include "localise/verification/image_lines.h"
 #include "localise/verification/place_evidence.h"

@@ -96,7 +96,7 @@ def mean_and_interval(values, draws=4000):
 def print_row(name, cells):
     trials = sum(cell["trials"] for cell in cells)
     answered = sum(round(cell["coverage"] * cell["trials"]) for cell in cells)
-    right = sum(round(cell["success_when_answered"] * round(cell["coverage"] * cell["trials"]))
+    right = sum(round((cell["success_when_answered"] or 0) * round(cell["coverage"] * cell["trials"]))
                 for cell in cells)
     parts = []
     for figure in FIGURES:

@@ -64,6 +64,20 @@ void check_pair(const PlaceView& view, const LocaliseArguments& options, const s
               "give --method pgh");
 }
 
+/// Throws Error for a view that cannot be compared with a map's.
+void check_cameras(const PlaceView& view,
+                   const TopologicalMap& map,
+                   const LocaliseArguments& options,
+                   const std::string& name) {
+  if (view.rig) {
+    check_pair(view, options, options.views.features + ": " + name);
+    check_same_rig(map, *view.rig, options.map);
+  } else if (needs_pair(options.method)) {
+    throw Error(options.views.features, name + " has no cameras",
+                "give --rig, or \"cameras\" with each view");
+  }
+}
+
 /// Whether two views hold the same lines, or corners where there are none, as far as a map's file
 /// keeps them.
 bool is_same_view(const PlaceView& a, const PlaceView& b) {
@@ -101,28 +115,33 @@ std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
                                              const Localiser& localiser,
                                              Session& session) {
   const NamedViews recorded = read_recorded(options.views, session);
-  tell_own_views(recorded.views, map, session);
+  const bool uses_looks = uses_option(options.method, "looks");
+  const auto further = std::count_if(recorded.views.begin(), recorded.views.end(),
+                                     [](const RecordedLooks& v) { return v.looks.size() > 1; });
+  if (!uses_looks && further > 0) {
+    session.warn(fmt::format("--method {} uses the first look alone, and {} {} more",
+                             options.method, further, further == 1 ? "view has" : "views have"));
+  }
   std::vector<LocalisedQuery> queries;
   for (std::size_t i = 0; i < recorded.views.size(); ++i) {
     const RecordedLooks& seen = recorded.views[i];
     const PlaceView& first = seen.looks[0].view;
-    if (first.rig) {
-      check_pair(first, options, options.views.features + ": " + recorded.names[i]);
-      check_same_rig(map, *first.rig, options.map);
-    } else if (needs_pair(options.method)) {
-      throw Error(options.views.features, recorded.names[i] + " has no cameras",
-                  "give --rig, or \"cameras\" with each view");
+    for (std::size_t look = 0; look < seen.looks.size(); ++look) {
+      const std::string name =
+          recorded.names[i] + (look > 0 ? fmt::format(", look {}", look + 1) : "");
+      check_cameras(seen.looks[look].view, map, options, name);
     }
     LocalisedQuery query;
     query.name = recorded.names[i];
     query.truth = seen.pose;
     query.lines = static_cast<int>(first.lines.size());
-    query.looks = static_cast<int>(seen.looks.size());
+    query.looks = uses_looks ? static_cast<int>(seen.looks.size()) : 1;
     const double before = thread_cpu_ms();
     query.answer = localiser.localise_looks(seen.looks);
     query.cpu_ms = thread_cpu_ms() - before + query.answer.program_cpu_ms;
     queries.push_back(std::move(query));
   }
+  tell_own_views(recorded.views, map, session);
   return queries;
 }
 

@@ -149,6 +149,21 @@ std::string probability_text(const LocalisationAnswer& answer) {
   return fmt::format("{:.{}f}", answer.probability, answer.probability > 0.9999 ? 6 : 4);
 }
 
+/// Which further looks would tell most, of the first queries that ask for one.
+std::string next_looks_text(const std::vector<LocalisedQuery>& queries) {
+  constexpr int most_shown = 3;
+  std::string text;
+  int asked = 0;
+  for (const LocalisedQuery& query : queries) {
+    if (query.answer.next_turn_rad == 0 || ++asked > most_shown) continue;
+    text += fmt::format("{}{}: {:+.0f} deg", text.empty() ? "" : ", ", query.name,
+                        degrees * query.answer.next_turn_rad);
+  }
+  if (asked == 0) return "";
+  if (asked > most_shown) text += fmt::format(", and {} more (--json)", asked - most_shown);
+  return "a further look, turned from the first, would tell more: " + text + "\n";
+}
+
 }  // namespace
 
 std::string queries_table(const std::vector<LocalisedQuery>& queries) {
@@ -171,6 +186,7 @@ std::string queries_table(const std::vector<LocalisedQuery>& queries) {
     text +=
         fmt::format("… and {} more: --json or -o gives them all\n", queries.size() - most_shown);
   }
+  text += next_looks_text(queries);
   text += success_text(s);
   if (!s.cpu_ms.empty()) text += fmt::format("{:.1f} ms CPU a query\n", mean(s.cpu_ms));
   return text;

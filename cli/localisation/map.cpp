@@ -122,7 +122,9 @@ TopologicalMap recorded_map(const MakeMapOptions& options, Session& session) {
   const NamedViews recorded = read_recorded(options.views, session);
   const std::string place =
       options.views.features.empty() ? options.views.poses : options.views.features;
-  return {nodes_of(recorded, place)};
+  const TopologicalMap map{nodes_of(recorded, place)};
+  check_one_rig(map, place);
+  return map;
 }
 
 void make(const MakeMapOptions& options, const CLI::App& verb, Session& session) {

@@ -16,4 +16,8 @@ namespace vernier::cli {
 /// can hold of them depends on its cameras; a new calibration of the same rig differs by far less.
 void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name);
 
+/// Throws Error(place, node) if the nodes of a map were not recorded with one rig, by the same
+/// limits.
+void check_one_rig(const TopologicalMap& map, const std::string& place);
+
 }  // namespace vernier::cli

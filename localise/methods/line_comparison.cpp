@@ -134,16 +134,15 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.
     constexpr double negligible = 1e-3;
-    const double probability = !options_.stages.compare ? 0
-                               : m.probability < negligible
-                                   ? m.probability
-                                   : m.probability * share_within_success(m.best.information);
+    constexpr double least = 1e-12;  // 0 would say that none is stated
+    const double share = m.probability < negligible ? 1 : share_within_success(m.best.information);
+    const double probability = options_.stages.compare ? std::max(m.probability * share, least) : 0;
     result.modes.push_back({m.best.pose, m.best.node, probability, m.best.score});
   }
-  if (!options_.stages.compare) {
-    std::stable_sort(result.modes.begin(), result.modes.end(),
-                     [](const PoseMode& a, const PoseMode& b) { return a.score > b.score; });
-  }
+  std::stable_sort(
+      result.modes.begin(), result.modes.end(), [&](const PoseMode& a, const PoseMode& b) {
+        return options_.stages.compare ? a.probability > b.probability : a.score > b.score;
+      });
   const PoseMode& best = result.modes[0];
   result.node = best.node;
   result.pose = best.pose;

@@ -326,7 +326,12 @@ RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>
                     "put it beside \"looks\", or leave it out");
       }
     }
-    const double turn = look.has("turn_rad") ? parse_angle(look.at("turn_rad")) : 0;
+    const bool has_turn = look.has("turn_rad");
+    if (i > 0 && !has_turn) {
+      throw Error(look.place(), "has no \"turn_rad\"",
+                  "give its heading less that of the first look, rad");
+    }
+    const double turn = has_turn ? parse_angle(look.at("turn_rad")) : 0;
     if (i == 0 && turn != 0) {
       throw Error(look.at("turn_rad").place(), "is not 0 for the first look",
                   "count turns from its heading");

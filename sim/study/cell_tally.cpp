@@ -109,7 +109,8 @@ void CellTally::finish() {
                                     cell_.cell.system.is_localiser() ? "maps" : "blocks", s.maps);
   }
   s.coverage = answered_ / n;
-  s.success_when_answered = answered_ > 0 ? static_cast<double>(successes_) / answered_ : 0;
+  s.success_when_answered = answered_ > 0 ? static_cast<double>(successes_) / answered_
+                                          : std::numeric_limits<double>::quiet_NaN();
   s.best_guess_success = guesses_ / n;
   s.node_success = node_ / n;
   s.recall_05 = close_ / n;

@@ -164,6 +164,46 @@ class Localise(verb_calls.ProgramCase):
         self.assertEqual(found['queries'][0]['looks'], 2)
         self.assertAlmostEqual(found['queries'][0]['pose'][0], 40, delta=0.1)
 
+    def test_every_look_needs_the_cameras_of_the_map(self):
+        self.map_of_rooms()
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        ask = ['localise', 'own.map', '--features', 'q.jsonl']
+        write(self.folder / 'own.jsonl', [view(room(0), cameras=rig['cameras'], pose=[0, 0, 0])])
+        self.done('map', 'make', '--features', 'own.jsonl', '-o', 'own.map')
+        first = view(room(0), cameras=rig['cameras'])
+        longer = json.loads(json.dumps(rig['cameras']))
+        for camera in longer:
+            camera['parameters']['f_px'] *= 2
+        for second, says in ((view(room(0), cameras=longer, turn_rad=0.3), 'recorded with another rig'),
+                             (view(room(0), turn_rad=0.3), 'q.jsonl: view 1, look 2 has no cameras'),
+                             (view(room(0), cameras=rig['cameras'][:1], turn_rad=0.3),
+                              'q.jsonl: view 1, look 2: is of one camera'),
+                             (view(room(0), cameras=rig['cameras']), 'has no "turn_rad"')):
+            write(self.folder / 'q.jsonl', [{'looks': [first, second]}])
+            self.refused(*ask, says=says)
+        write(self.folder / 'two.jsonl', [view(room(0), cameras=rig['cameras'], pose=[0, 0, 0]),
+                                          view(room(1), cameras=longer, pose=[9, 0, 0])])
+        self.refused('map', 'make', '--features', 'two.jsonl', '-o', 'two.map',
+                     says='node 2: those before were recorded with another rig')
+        self.assertFalse((self.folder / 'two.map').exists())
+
+    def test_methods_of_one_look_say_so(self):
+        self.map_of_rooms()
+        write(self.folder / 'q.jsonl',
+              [{'looks': [view(room(2)), view(room(2), 0, 0, 0.3, turn_rad=0.3)]}])
+        run = self.run_program('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal',
+                               '--method', 'pgh', '--json')
+        self.assertIn('--method pgh uses the first look alone, and 1 view has more', run.stderr)
+        self.assertEqual(json.loads(run.stdout)['queries'][0]['looks'], 1)
+
+    def test_the_next_look_is_said(self):
+        self.done('map', 'make', '--world', 'workshop', '--spacing-m', '2', '--headings', '4',
+                  '-o', 'w.map')
+        write(self.folder / 'q.jsonl', [{'lines': []}])
+        run = self.run_program('localise', 'w.map', '--features', 'q.jsonl', '--rig', 'nominal')
+        self.assertEqual(run.returncode, 3)
+        self.assertRegex(run.stdout, r'a further look, turned from the first, would tell more: view 1: [+-]\d+ deg')
+
     def test_without_evidence_it_abstains(self):
         self.map_of_rooms()
         parallel = [{'a_m': [3 + i, 1, 0], 'b_m': [3 + i, -1, 0], 'kind': 'level', 'sigma_m': 0.02}

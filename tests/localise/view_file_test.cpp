@@ -197,6 +197,7 @@ TEST(ViewFile, NamesWhatIsWrong) {
       {R"({"looks":[{"pose":[1,2,0],"lines":[]}]})", "looks[0].pose", "inside a look"},
       {R"({"turn_rad":1,"lines":[]})", "turn_rad", "of no look"},
       {R"({"looks":[{"turn_rad":1,"lines":[]}]})", "turn_rad", "not 0"},
+      {R"({"looks":[{"lines":[]},{"lines":[]}]})", "looks[1]", "no \"turn_rad\""},
       {R"({"lines":[],"segments":[]})", ":1", "segments and lines"},
       {R"({"lines":[],"lines":[]})", ":1", ""},
   };

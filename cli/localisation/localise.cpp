@@ -126,10 +126,9 @@ std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
   for (std::size_t i = 0; i < recorded.views.size(); ++i) {
     const RecordedLooks& seen = recorded.views[i];
     const PlaceView& first = seen.looks[0].view;
-    for (std::size_t look = 0; look < seen.looks.size(); ++look) {
-      const std::string name =
-          recorded.names[i] + (look > 0 ? fmt::format(", look {}", look + 1) : "");
-      check_cameras(seen.looks[look].view, map, options, name);
+    for (std::size_t k = 0; k < seen.looks.size(); ++k) {
+      const std::string name = recorded.names[i] + (k > 0 ? fmt::format(", look {}", k + 1) : "");
+      check_cameras(seen.looks[k].view, map, options, name);
     }
     LocalisedQuery query;
     query.name = recorded.names[i];

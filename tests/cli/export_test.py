@@ -182,6 +182,17 @@ class Export(WithStudy):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertIn('12 of 24 blocks', done.stderr)
 
+    def test_without_answers_none_of_them_is_right_or_wrong(self):
+        (self.folder / 'lost.toml').write_text(
+            '[study]\ntrials = 6\n[map]\nspacing_m = 2\n[sources]\nedge_loss = 0.95\n')
+        self.works('study', 'lost.toml', '-o', 'lost', '-q')
+        self.works('export', 'lost', '-o', 'lost.csv')
+        with open(self.folder / 'lost.csv', newline='') as file:
+            row, = csv.DictReader(file)
+        self.assertEqual((float(row['coverage']), row['success_when_answered']), (0, ''))
+        cell, = json.loads(self.works('study', 'status', 'lost', '--json', '-q').stdout)['cells']
+        self.assertIsNone(cell['success_when_answered'])
+
     def test_bad_input_is_told(self):
         self.complains('export', 'results', '-o', 'x.xlsx', of='neither of the endings .csv and .npy')
         self.complains('export', 'nowhere', '-o', 'x.csv', of='is not a study folder')

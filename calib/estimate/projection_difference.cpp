@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "calib/camera.h"
@@ -149,6 +151,13 @@ std::vector<SeenPoint> focus_of(const std::vector<SeenPoint>& points) {
   std::copy_if(points.begin(), points.end(), std::back_inserter(chosen),
                [](const SeenPoint& p) { return p.in_focus; });
   return chosen;
+}
+
+/// Those at several distances count once.
+std::size_t distinct_pixels(const std::vector<SeenPoint>& points) {
+  std::set<std::pair<int, std::size_t>> pixels;
+  for (const SeenPoint& p : points) pixels.emplace(p.camera, p.cell);
+  return pixels.size();
 }
 
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
@@ -306,7 +315,7 @@ ProjectionDifference projection_difference(const Rig& a,
   ProjectionDifference result;
   std::vector<SeenPoint> points = points_of(a, b, options, result);
   const std::vector<SeenPoint> focus = focus_of(points);
-  if (focus.size() < 6) {
+  if (distinct_pixels(focus) < 6) {
     throw Error("projection difference",
                 "fewer than 6 pixels of the focus have a ray in one rig, within 80 degrees of its "
                 "axis, and an image in the other",

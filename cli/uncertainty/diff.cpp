@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "calib/base/shown_text.h"
 #include "calib/covariance.h"
+#include "calib/error.h"
 #include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/projection_difference.h"
 #include "calib/estimate/same_rig.h"
@@ -106,6 +108,10 @@ Comparison compare(const DiffArguments& options) {
     });
   }
   const auto [columns, rows] = parse_limited_grid(options.grid, "--grid", most_cells);
+  if (columns < 2 || rows < 2) {
+    throw Error("--grid", in_quotes(options.grid) + " is smaller than 2x2",
+                "use a grid such as 20x15");
+  }
   const ProjectionDifferenceOptions how{
       .distances_m = parse_distances(options.distances, "--distances-m"),
       .grid = {columns, rows},

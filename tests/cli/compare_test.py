@@ -117,6 +117,11 @@ class Diff(Rigs):
             self.complains('diff', 'nominal', 'nominal', '--distances-m=' + text,
                            of='is not a list of positive distances')
         self.complains('diff', 'nominal', 'nominal', '--grid', '20', of='--grid')
+        for grid in ('1x1', '1x9', '9x1'):
+            self.complains('diff', 'nominal', 'nominal', '--grid', grid,
+                           of=f'--grid: "{grid}" is smaller than 2x2; use a grid such as 20x15')
+        self.complains('diff', 'nominal', 'nominal', '--grid', '3x3', '--focus', '0.5',
+                       of='fewer than 6 pixels of the focus')
         self.complains('diff', 'nominal', 'nominal', '--focus', '0', of='--focus')
         self.complains('diff', 'nominal', 'nominal', '--covariance', 'best', of='--covariance')
 

@@ -130,6 +130,12 @@ TEST(ProjectionDifference, RefusesBadOptions) {
   EXPECT_NE(error_output({.focus_share = 0}).find("focus"), std::string::npos);
   EXPECT_NE(error_output({.distances_m = {1}, .grid = {1, 1}}).find("fewer than 6 pixels"),
             std::string::npos);
+  // one pixel a camera in the focus, at four distances
+  for (const int side : {1, 3}) {
+    const std::string message =
+        error_output({.distances_m = {1, 2, 5, 10}, .grid = {side, side}, .focus_share = 0.5});
+    EXPECT_NE(message.find("fewer than 6 pixels"), std::string::npos) << message;
+  }
 }
 
 }  // namespace

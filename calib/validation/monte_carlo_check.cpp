@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/validation/monte_carlo_check.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,7 @@
 
 #include "calib/base/decompositions.h"
 #include "calib/base/ordered_parallel.h"
+#include "calib/base/shown_text.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/outliers.h"
@@ -168,14 +171,51 @@ void evaluate_covariance(const Eigen::MatrixXd& errors,
   check.ks_p_components = std::min(1.0, q * least);
 }
 
+constexpr int fewest_trials(int parameters) { return 2 * parameters; }
+
+void require_enough_trials(int parameters, int trials) {
+  if (parameters == 0) {
+    throw Error("Monte-Carlo check", "no parameter is free", "free one, or do without this check");
+  }
+  if (trials < fewest_trials(parameters)) {
+    throw Error("Monte-Carlo check",
+                fmt::format("{} {} too few for {}", counted(trials, "trial"),
+                            trials == 1 ? "is" : "are", counted(parameters, "parameter")),
+                fmt::format("ask for at least {}", fewest_trials(parameters)));
+  }
+}
+
 }  // namespace
 
 bool MonteCarloCheck::enough_trials_solved() const { return 100 * failed <= trials + failed; }
 
-bool MonteCarloCheck::scatter_matches_covariance() const {
-  return nees_mean >= nees_interval_99.low && nees_mean <= nees_interval_99.high &&
-         eigenvalues[0] >= eigenvalue_band_99.low && eigenvalues[1] <= eigenvalue_band_99.high &&
-         ks_p > min_p && ks_p_components > min_p;
+std::vector<std::string> MonteCarloCheck::departures() const {
+  std::vector<std::string> found;
+  if (!(nees_mean >= nees_interval_99.low && nees_mean <= nees_interval_99.high)) {
+    found.push_back(
+        fmt::format("the mean NEES is {:.4g}, outside its 99 % interval [{:.4g}, {:.4g}]",
+                    nees_mean, nees_interval_99.low, nees_interval_99.high));
+  }
+  const Interval& band = eigenvalue_band_99;
+  const auto add = [&](const char* which, double value) {
+    found.push_back(
+        fmt::format("the {} eigenvalue of the whitened samples is {:.4g}, outside [{:.4g}, {:.4g}]",
+                    which, value, band.low, band.high));
+  };
+  if (!(eigenvalues[0] >= band.low)) add("smallest", eigenvalues[0]);
+  if (!(eigenvalues[1] <= band.high)) add("largest", eigenvalues[1]);
+  const auto test = [&](const char* of, double p) {
+    if (p > min_p) return;
+    found.push_back(
+        fmt::format("Kolmogorov-Smirnov of the {} gives p = {:.2g}, not above {:g}", of, p, min_p));
+  };
+  test("NEES", ks_p);
+  test("components", ks_p_components);
+  return found;
+}
+
+void require_enough_trials(const Eigen::MatrixXd& covariance, int trials) {
+  require_enough_trials(static_cast<int>(ScaledRoot(covariance).white.rows()), trials);
 }
 
 MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
@@ -189,6 +229,8 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                 "give it in full, with zeros for fixed parameters");
   }
   const ScaledRoot root(covariance);
+  const auto parameters = static_cast<int>(root.white.rows());
+  require_enough_trials(parameters, options.trials);
   const StableCoordinates about_state(state.rig, covariance);
   const Copies copies(observations, state, problem, options.seed);
   Eigen::MatrixXd errors(p, options.trials);
@@ -203,11 +245,12 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
     if (solved[i]) errors.col(check.trials++) = errors.col(static_cast<Eigen::Index>(i));
   }
   check.failed = options.trials - check.trials;
-  if (check.trials < 2 * root.white.rows() || root.white.rows() == 0) {
-    throw Error("Monte-Carlo check",
-                std::to_string(check.trials) + " copies were solved, too few for " +
-                    std::to_string(root.white.rows()) + " parameters",
-                "ask for more trials");
+  if (check.trials < fewest_trials(parameters)) {
+    throw Error(
+        "Monte-Carlo check",
+        fmt::format("of {} copies {} could be solved; {} need {}", options.trials, check.trials,
+                    counted(parameters, "parameter"), fewest_trials(parameters)),
+        "ask for more trials");
   }
   const Eigen::MatrixXd found = errors.leftCols(check.trials);
   evaluate_covariance(found, covariance, root, options.seed, check);

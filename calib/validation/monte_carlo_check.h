@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "calib/board_observations.h"
@@ -44,15 +45,21 @@ struct MonteCarloCheck {
   bool enough_trials_solved() const;
   /// The scatter is consistent with C: the mean NEES in its 99 % interval, the eigenvalues in their
   /// band, both ks_p above 0.005. A correct covariance fails in at most 3 % of checks.
-  bool scatter_matches_covariance() const;
+  bool scatter_matches_covariance() const { return departures().empty(); }
+  /// In words, each of these statistics that is not, with its band.
+  std::vector<std::string> departures() const;
   bool consistent() const { return enough_trials_solved() && scatter_matches_covariance(); }
 };
+
+/// Throws Error for fewer trials than 2 q, q the rank of the covariance, and for q = 0.
+void require_enough_trials(const Eigen::MatrixXd& covariance, int trials);
 
 /// Solves copies of the calibration with predicted corners at `state` plus noise N(0, σ²), σ =
 /// problem.pixel_sigma_px (over the square root of a corner's weight), each with the mean of every
 /// prior drawn from that prior about state.rig. A view's noise is drawn by (trial, frame, camera).
 /// `covariance` is full size, zero for held parameters. Copies are solved by Resolver from `state`.
-/// Throws Error if the covariance has another size or fewer than 2 q copies can be solved.
+/// Throws Error if the covariance has another size or fewer than 2 q copies can be solved; before
+/// the first one is, if fewer are asked for.
 MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                                   const BoardState& state,
                                   const ReprojectionProblem& problem,

@@ -24,6 +24,7 @@
 #include "calib/rig_file.h"
 #include "calib/solver/initial_rig.h"
 #include "calib/validation/held_out_boards.h"
+#include "calib/validation/monte_carlo_check.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/check_file.h"
 #include "cli/calibration/check_halves.h"
@@ -211,6 +212,7 @@ void run(const CheckArguments& options, Session& session) {
   const RigEstimate usual = without_effects(solved.estimate);
   tell_of_effects(options, solved, session);
   const CheckedProblem problem = problem_to_check(solved, usual);
+  require_enough_trials(problem.bound, options.copies.trials);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
             {"cameras", problem.state.rig.cameras.size()},
             {"frames", problem.state.frames.size()},

@@ -797,6 +797,22 @@ class Check(Case):
         (share / 'rigs').symlink_to(ROOT / 'datasets/rigs')
         return dict(os.environ, VERNIER_SHARE=str(share))
 
+    def test_too_few_trials_are_refused_before_mrcal_is_asked(self):
+        environment = self.share('open("asked", "w")\n')
+        for n, said in (('1', '1 trial is'), ('31', '31 trials are')):
+            done = vernier('check', 'nominal', '--trials', n, env=environment, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(done.stderr, f'vernier: Monte-Carlo check: {said} too few for 16 '
+                             'parameters; ask for at least 32\n')
+            self.assertFalse((self.folder / 'asked').exists())
+
+    def test_the_statistic_outside_its_band_is_named(self):
+        done = vernier('check', 'nominal', '--trials', '40', '--no-mrcal', '--seed', '72')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('covariance: the mean NEES is 12.84, outside its 99 % interval [13.79, 18.4] (',
+                      done.stderr)
+        self.assertIn('fails in up to 3 % of checks; more --trials tell', done.stderr)
+
     def test_json_holds_what_was_promised(self):
         found = json.loads(self.works('check', 'nominal', '--trials', '60', '--json').stdout)
         copies = found['monte_carlo']

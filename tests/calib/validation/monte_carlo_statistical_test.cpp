@@ -172,8 +172,32 @@ TEST(MonteCarloCheck, NamesWhatIsWrong) {
             "full, with "
             "zeros for fixed parameters");
   EXPECT_EQ(message([&] { calibrated.check(calibrated.covariance, 20); }),
-            "Monte-Carlo check: 20 copies were solved, too few for 16 parameters; ask for "
-            "more trials");
+            "Monte-Carlo check: 20 trials are too few for 16 parameters; ask for at least 32");
+  EXPECT_EQ(message([&] { require_enough_trials(calibrated.covariance, 1); }),
+            "Monte-Carlo check: 1 trial is too few for 16 parameters; ask for at least 32");
+  EXPECT_EQ(message([&] { require_enough_trials(calibrated.covariance, 32); }), "nothing thrown");
+}
+
+TEST(MonteCarloCheck, NamesEachStatisticOutsideItsBand) {
+  MonteCarloCheck check;
+  check.nees_mean = 14.65;
+  check.nees_interval_99 = {12.1, 16};
+  check.eigenvalues = {0.2, 2.651};
+  check.eigenvalue_band_99 = {0.1, 2.642};
+  check.ks_p = check.ks_p_components = 0.4;
+  EXPECT_EQ(check.departures(),
+            std::vector<std::string>{"the largest eigenvalue of the whitened samples is 2.651, "
+                                     "outside [0.1, 2.642]"});
+  EXPECT_FALSE(check.scatter_matches_covariance());
+  check.eigenvalues[1] = 2.6;
+  EXPECT_TRUE(check.scatter_matches_covariance());
+  check = {.nees_mean = 17,
+           .nees_interval_99 = {12.1, 16},
+           .eigenvalues = {0.05, 1},
+           .eigenvalue_band_99 = {0.1, 2.642},
+           .ks_p = 0.001,
+           .ks_p_components = std::nan("")};
+  EXPECT_EQ(check.departures().size(), 4u);
 }
 
 TEST(Distributions, ChiSquared) {

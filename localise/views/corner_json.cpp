@@ -89,6 +89,7 @@ std::vector<StereoCorner> parse_corners(const JsonNode& node, const Rig* rig) {
   std::vector<StereoCorner> corners;
   for (std::size_t i = 0; i < node.size(); ++i) {
     const JsonNode pair = node.at(i);
+    check_spelling(pair, {"left_px", "right_px", "covariance_px2", "descriptor"});
     StereoCorner corner;
     corner.left_px = parse_pixel(pair.at("left_px"), rig->cameras[0]);
     corner.right_px = parse_pixel(pair.at("right_px"), rig->cameras[1]);

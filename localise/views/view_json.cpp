@@ -33,7 +33,7 @@ using stereo::ImageSegment;
 using stereo::StereoSegment;
 using vernier::internal::in_quotes;
 using vernier::internal::JsonNode;
-using vernier::internal::misspelt_word;
+using vernier::internal::misspelt_key;
 using vernier::internal::rig_json::cameras_json;
 using vernier::internal::rig_json::parse_cameras;
 
@@ -63,6 +63,18 @@ LineKind parse_kind(const JsonNode& node) {
               "use vertical, level or oblique");
 }
 
+/// Keys of a look; others are passed over, but not those that are nearly one of these.
+constexpr std::array<std::string_view, 8> view_keys{
+    "cameras", "mount",   "lines", "segments", "image_lines_px", "monocular_lines_px",
+    "corners", "turn_rad"};
+
+/// Of a position or a look.
+void check_keys_of_view(const JsonNode& node) {
+  std::vector<std::string_view> known{"pose", "looks"};
+  known.insert(known.end(), view_keys.begin(), view_keys.end());
+  check_spelling(node, known);
+}
+
 /// Entries of a list that may be missing, at most so many.
 std::size_t entries(const JsonNode& node, const std::string& key, std::size_t most) {
   if (!node.has(key)) return 0;
@@ -85,6 +97,7 @@ Eigen::Vector3d parse_point(const JsonNode& node) {
 }
 
 PlaceLine parse_line(const JsonNode& node) {
+  check_spelling(node, {"a_m", "b_m", "kind", "sigma_m"});
   PlaceLine line;
   line.a_m = parse_point(node.at("a_m"));
   line.b_m = parse_point(node.at("b_m"));
@@ -139,6 +152,7 @@ void check_unit(const std::vector<ImageSegment>& lines, const JsonNode& node) {
 }
 
 CameraMount parse_mount(const JsonNode& node) {
+  check_spelling(node, {"height_m", "pitch_rad"});
   CameraMount mount{node.at("height_m").number(), node.at("pitch_rad").number()};
   constexpr double highest_m = 100;
   if (!(mount.height_m > 0 && mount.height_m <= highest_m)) {
@@ -161,6 +175,7 @@ PlaceView reconstructed(const JsonNode& node, const PlaceView& seen) {
   std::vector<ImageSegment> left;
   for (std::size_t i = 0; i < node.size(); ++i) {
     const JsonNode pair = node.at(i);
+    check_spelling(pair, {"left_px", "right_px"});
     segments.push_back({parse_segment(pair.at("left_px"), &seen.rig->cameras[0]),
                         parse_segment(pair.at("right_px"), &seen.rig->cameras[1])});
     left.push_back(segments.back().left);
@@ -186,22 +201,6 @@ Json segments_json(const std::vector<ImageSegment>& segments) {
     json.push_back({line.a_px.x(), line.a_px.y(), line.b_px.x(), line.b_px.y()});
   }
   return json;
-}
-
-/// Keys of a look; others are passed over, but not those that are nearly one of these.
-constexpr std::array<std::string_view, 8> view_keys{
-    "cameras", "mount",   "lines", "segments", "image_lines_px", "monocular_lines_px",
-    "corners", "turn_rad"};
-
-void check_spelling(const JsonNode& node) {
-  std::vector<std::string_view> known{"pose", "looks"};
-  known.insert(known.end(), view_keys.begin(), view_keys.end());
-  for (const auto& [key, value] : node.json().items()) {
-    if (const auto meant = misspelt_word(key, known)) {
-      throw Error(node.place(), "has an unknown key " + in_quotes(key),
-                  "did you mean \"" + *meant + "\"?");
-    }
-  }
 }
 
 PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
@@ -254,6 +253,16 @@ Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
 }  // namespace
 
+void check_spelling(const JsonNode& node, const std::vector<std::string_view>& known) {
+  if (!node.json().is_object()) return;
+  for (const auto& [key, value] : node.json().items()) {
+    if (const auto meant = misspelt_key(key, known)) {
+      throw Error(node.place(), "has an unknown key " + in_quotes(key),
+                  "did you mean \"" + *meant + "\"?");
+    }
+  }
+}
+
 Json pose_json(const Pose2D& pose) {
   return {pose.x_m, pose.y_m, std::remainder(pose.heading_rad, 2 * std::numbers::pi)};
 }
@@ -301,7 +310,7 @@ Json looks_json(std::span<const Look> looks) {
 
 RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
   RecordedLooks recorded;
-  if (node.json().is_object()) check_spelling(node);
+  check_keys_of_view(node);
   if (node.has("pose")) recorded.pose = parse_pose(node.at("pose"));
   if (!node.has("looks")) {
     if (node.has("turn_rad")) {
@@ -319,7 +328,7 @@ RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>
   if (looks == 0) throw Error(node.at("looks").place(), "is empty", "give at least one");
   for (std::size_t i = 0; i < looks; ++i) {
     const JsonNode look = node.at("looks").at(i);
-    if (look.json().is_object()) check_spelling(look);
+    check_keys_of_view(look);
     for (const char* key : {"pose", "looks"}) {
       if (look.has(key)) {
         throw Error(look.at(key).place(), "is inside a look",

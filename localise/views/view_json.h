@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/base/json_node.h"
@@ -16,6 +17,10 @@
 namespace vernier::localise::internal {
 
 using Json = nlohmann::ordered_json;
+
+/// Throws Error for a key that is nearly one of the known (misspelt_key); others are passed over.
+void check_spelling(const vernier::internal::JsonNode& node,
+                    const std::vector<std::string_view>& known);
 
 /// [x_m, y_m, heading_rad]
 Json pose_json(const Pose2D& pose);

@@ -139,6 +139,8 @@ TEST(ViewFile, NamesWhatIsWrongWithCorners) {
            {R"({"corners":[{"left_px":[100,20]}]})", "right_px"},
            {R"({"corners":[{"left_px":[100,null],"right_px":[90,20]}]})", "left_px"},
            {head + R"(,"covariance_px2":[[1,0],[0,1]]}]})", "4 x 4"},
+           {head + R"(,"covariance":[[1]]}]})", "did you mean \"covariance_px2\"?"},
+           {head + R"(,"Descriptor":[1]}]})", "did you mean \"descriptor\"?"},
            {head + R"(,"covariance_px2":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,-1]]}]})",
             "positive definite"},
            {head + R"(,"descriptor":[]}]})", "0 entries"},
@@ -194,6 +196,19 @@ TEST(ViewFile, NamesWhatIsWrong) {
       {R"({"mout":{"height_m":1,"pitch_rad":0},"lines":[]})", ":1", "did you mean \"mount\"?"},
       {R"({"looks":[{"turn_rad":0,"camera":[],"lines":[]}]})", "looks[0]", "\"cameras\"?"},
       {R"({"lnies":[],"corners":[]})", ":1", "\"lines\"?"},
+      {R"({"Pose":[1,2,0],"lines":[]})", ":1", "\"pose\"?"},
+      {R"({"Mount":{"height_m":1,"pitch_rad":0},"lines":[]})", ":1", "\"mount\"?"},
+      {R"({"Imge_lines_px":[],"lines":[]})", ":1", "\"image_lines_px\"?"},
+      {R"({"image_lines":[],"lines":[]})", ":1", "\"image_lines_px\"?"},
+      {R"({"monocular_lines":[],"lines":[]})", ":1", "\"monocular_lines_px\"?"},
+      {R"({"looks":[{"lines":[]},{"turn_deg":30,"lines":[]}]})", "looks[1]", "\"turn_rad\"?"},
+      {R"({"mount":{"height_m":1,"pitch_rad":0,"pitch_deg":9},"lines":[]})", "mount",
+       "\"pitch_rad\"?"},
+      {R"({"mount":{"heigt_m":1,"pitch_rad":0},"lines":[]})", "mount", "\"height_m\"?"},
+      {R"({"lines":[{"a_m":[2,1,0],"b_m":[2,1,1],"kind":"vertical","Sigma_m":0}]})", "lines[0]",
+       "\"sigma_m\"?"},
+      {R"({"lines":[{"a":[2,1,0],"b_m":[2,1,1],"kind":"vertical","sigma_m":0}]})", "lines[0]",
+       "\"a_m\"?"},
       {R"({"looks":[{"pose":[1,2,0],"lines":[]}]})", "looks[0].pose", "inside a look"},
       {R"({"turn_rad":1,"lines":[]})", "turn_rad", "of no look"},
       {R"({"looks":[{"turn_rad":1,"lines":[]}]})", "turn_rad", "not 0"},
@@ -214,7 +229,8 @@ TEST(ViewFile, NamesWhatIsWrong) {
 // Keys of other programs are passed over.
 TEST(ViewFile, MayHaveKeysOfItsOwn) {
   const Folder folder;
-  for (const char* key : {"image", "time_s", "count", "amount", "comment"}) {
+  for (const char* key :
+       {"image", "time_s", "count", "amount", "comment", "position_m", "Image", "pose_of_robot"}) {
     const auto file = folder.write("f.jsonl", "{\"" + std::string(key) + "\":1,\"lines\":[]}");
     EXPECT_EQ(error_message([&] { read_views(file); }), "") << key;
   }

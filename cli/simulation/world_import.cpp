@@ -262,6 +262,7 @@ void run(ImportArguments arguments, Session& session) {
        {"parts_left_out", mesh.parts_left_out},
        {"edges", report.edges},
        {"edges_of_other_storeys", report.outside},
+       {"edges_below_floor", report.below},
        {"edges_too_short", report.shorter},
        {"edges_made_upright", report.made_upright},
        {"levelled_deg", report.levelled_deg},
@@ -277,16 +278,16 @@ void run(ImportArguments arguments, Session& session) {
        {"floor_cut_off_m2", proposal.other_m2},
        {"floor_at_other_levels_m2", proposal.level_m2},
        {"floor_open_m2", proposal.open_m2}},
-      fmt::format("{}: {}, {} triangles and {} lines\n"
-                  "  {} is up ({}), a unit is {:g} m ({}); {}\n{}"
-                  "  {} edges, of them {} in other storeys and {} shorter than {:g} m{}\n"
-                  "{}: {:.1f} x {:.1f} x {:.1f} m, {} segments, {} corners, {} surfaces\n  {}",
-                  arguments.file, mesh.format, report.triangles, report.lines, axis,
-                  report.axes.up_because, report.axes.unit_m, report.axes.unit_because,
-                  storeys_text(report, options), moved, report.edges, report.outside,
-                  report.shorter, options.shortest_m, upright_text(report), arguments.output,
-                  size.x(), size.y(), size.z(), world.segments.size(), world.corners.size(),
-                  world.surfaces.size(), route));
+      fmt::format(
+          "{}: {}, {} triangles and {} lines\n"
+          "  {} is up ({}), a unit is {:g} m ({}); {}\n{}"
+          "  {} edges, of them {} below the floor, {} above the top and {} shorter than {:g} m{}\n"
+          "{}: {:.1f} x {:.1f} x {:.1f} m, {} segments, {} corners, {} surfaces\n  {}",
+          arguments.file, mesh.format, report.triangles, report.lines, axis, report.axes.up_because,
+          report.axes.unit_m, report.axes.unit_because, storeys_text(report, options), moved,
+          report.edges, report.below, report.outside - report.below, report.shorter,
+          options.shortest_m, upright_text(report), arguments.output, size.x(), size.y(), size.z(),
+          world.segments.size(), world.corners.size(), world.surfaces.size(), route));
 }
 
 }  // namespace

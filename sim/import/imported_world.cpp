@@ -214,6 +214,7 @@ ImportedWorld import_world(const Mesh& file,
     const double length = (b - a).norm();
     if (length == 0) {
       ++report.outside;
+      if (std::max(edge.first.z(), edge.second.z()) <= -below_m) ++report.below;
     } else if (length < options.shortest_m - weld_m) {  // rounding must not decide
       ++report.shorter;
     } else {

@@ -35,6 +35,7 @@ struct ImportReport {
   std::size_t vertices = 0, triangles = 0, lines = 0;  ///< of the file
   std::size_t edges = 0;                               ///< that one would see, of all storeys
   std::size_t outside = 0;                             ///< of them above or below the storey
+  std::size_t below = 0;                               ///< of these below it
   std::size_t shorter = 0;                             ///< of them left out
   CreaseRemarks creases;                               ///< of all storeys
   std::size_t made_upright = 0;                        ///< of those in the world

@@ -57,6 +57,14 @@ class World(verb_calls.ProgramCase):
         self.assertAlmostEqual(cell['world_ceiling'], same['aliasing']['ceiling'], 12)
         self.assertAlmostEqual(cell['unaliased_share'], same['aliasing']['unique_share'], 12)
 
+    def test_edges_outside_the_storey_are_said_to_be_below_or_above(self):
+        for words, said in ((('--floor-m', '0.5'), '8 below the floor, 0 above the top and 0 shorter'),
+                            (('--floor-m', '0', '--top-m', '1'),
+                             '0 below the floor, 8 above the top and 0 shorter')):
+            run = self.run_program('import', 'room.ply', '--no-route', '-o', 'cut.world.toml', *words)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn('24 edges, of them ' + said, run.stdout)
+
     def test_buildings_of_every_kind_and_of_several(self):
         for kinds in ('office', 'home', 'hall', 'corridors', 'home,hall'):
             made = self.done('make', '--kind', kinds, '--seed', 5, '-o', 'made.world.toml')

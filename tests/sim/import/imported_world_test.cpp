@@ -249,6 +249,10 @@ TEST(ImportedWorld, IsOneStorey) {
     EXPECT_LT(high, 3);
   }
   EXPECT_NEAR(upper.report.floor_m, 3, 1e-9);
+  EXPECT_GT(lower.report.outside, 0u);
+  EXPECT_EQ(lower.report.below, 0u);
+  EXPECT_GT(upper.report.below, 0u);
+  EXPECT_EQ(upper.report.below, upper.report.outside);
   options.storey = 3;
   EXPECT_EQ(error_message([&] { import_world(two_storeys(), options, "m.obj"); }),
             "m.obj: has 2 storeys, and no storey 3; give one of them, or the floor's height");

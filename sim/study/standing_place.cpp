@@ -197,8 +197,9 @@ std::string standing_fault(const Visibility& visibility, const Pose2D& pose, dou
   const WorldExtent box = standing_box(world);
   if (!(pose.x_m >= box.low_m.x() && pose.x_m <= box.high_m.x() && pose.y_m >= box.low_m.y() &&
         pose.y_m <= box.high_m.y())) {
+    const WorldExtent own = world.segments.empty() ? box : extent(world);
     return fmt::format("is outside the world, which extends from ({:g}, {:g}) to ({:g}, {:g}) m",
-                       box.low_m.x(), box.low_m.y(), box.high_m.x(), box.high_m.y());
+                       own.low_m.x(), own.low_m.y(), own.high_m.x(), own.high_m.y());
   }
   const Eigen::Vector2d at(pose.x_m, pose.y_m);
   if (!(eye_height_m >= box.low_m.z())) {

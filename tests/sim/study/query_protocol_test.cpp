@@ -163,6 +163,7 @@ TEST(StandingFault, NamesWhyACameraCannotBeThere) {
   add_box(description, 2, 2.5, 0.6, 0.6, 0.7);
   description.loose.surfaces_m.push_back({{1, 1.5, 0}, {1, 4, 0}, {1, 4, 2.5}, {1, 1.5, 2.5}});
   description.route.push_back({{{1.5, 1.8}, {3, 1.8}}});
+  description.route.push_back({{{2, 0.4}, {5.6, 0.4}}});  // nearer to the walls than poses lie off
   const World world = build_world(description);
   const Visibility visibility(world);
   const auto fault = [&](double x, double y, double height) {

@@ -183,6 +183,13 @@ void run(ImportArguments arguments, Session& session) {
                     "round things are; see --shortest-m",
                     arguments.file, report.shorter, report.edges, options.shortest_m));
   }
+  if (report.floor_slope_deg > 0) {
+    session.warn(
+        fmt::format("{}: its floor slopes by {:.1f} degrees; the world's is level at {:g} m, and "
+                    "what lies below "
+                    "that is left out: level the file, or give --floor-m",
+                    arguments.file, report.floor_slope_deg, report.floor_m));
+  }
   constexpr std::size_t least_shallow = 12;  // a column of as many sides
   constexpr double above_shallow_deg = 36;
   if (report.creases.shallow_uprights >= least_shallow && options.crease_deg < above_shallow_deg) {
@@ -266,6 +273,7 @@ void run(ImportArguments arguments, Session& session) {
        {"edges_too_short", report.shorter},
        {"edges_made_upright", report.made_upright},
        {"levelled_deg", report.levelled_deg},
+       {"floor_slope_deg", report.floor_slope_deg},
        {"segments", world.segments.size()},
        {"corners", world.corners.size()},
        {"surfaces", world.surfaces.size()},

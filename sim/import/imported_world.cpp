@@ -197,6 +197,7 @@ ImportedWorld import_world(const Mesh& file,
   building = welded(building, weld_m);
   std::vector<Polygon> faces = convex_faces(building);
   const auto [floor, top] = heights_of(options, building, faces, lift, place, report);
+  report.floor_slope_deg = floor_slope_rad(building, floor) * 180 / std::numbers::pi;
   for (Eigen::Vector3d& v : building.vertices) v.z() -= floor;
   for (Polygon& face : faces) {
     for (Eigen::Vector3d& v : face) v.z() -= floor;

@@ -40,6 +40,7 @@ struct ImportReport {
   CreaseRemarks creases;                               ///< of all storeys
   std::size_t made_upright = 0;                        ///< of those in the world
   double levelled_deg = 0;                             ///< by which the building leaned
+  double floor_slope_deg = 0;                          ///< what is left, floor_slope_rad()
 };
 
 struct ImportedWorld {

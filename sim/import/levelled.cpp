@@ -103,6 +103,28 @@ Mesh levelled(Mesh mesh, const Vector3d& up) {
   return mesh;
 }
 
+double floor_slope_rad(const Mesh& mesh, double floor_m) {
+  constexpr double near_m = 1, least_slope_rad = 0.2 * degree;
+  Mesh near_floor = mesh;
+  std::erase_if(near_floor.triangles, [&](const auto& corners) {
+    const auto& [a, b, c] = corners;
+    const double z = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]).z() / 3;
+    return std::abs(z - floor_m) > near_m;
+  });
+  std::vector<std::pair<double, double>> leans;  // with areas
+  double left = 0;
+  for (const auto& [normal, area] : faces_of(near_floor).level) {
+    leans.emplace_back(lean_rad(Vector3d::Zero(), normal), area);
+    left += 0.5 * area;
+  }
+  std::sort(leans.begin(), leans.end());
+  for (const auto& [lean, area] : leans) {
+    left -= area;
+    if (left <= 0) return lean >= least_slope_rad ? lean : 0;
+  }
+  return 0;
+}
+
 double lean_rad(const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
   return std::atan2(d.head<2>().norm(), std::abs(d.z()));

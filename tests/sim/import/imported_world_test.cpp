@@ -108,6 +108,7 @@ TEST(ImportedWorld, IsLevelledIfFloorAndWallsLean) {
   options.unit_m = 1;
   const ImportedWorld plain = import_world(test::house(), options, "m.obj");
   EXPECT_EQ(plain.report.levelled_deg, 0);
+  EXPECT_EQ(plain.report.floor_slope_deg, 0);
   EXPECT_EQ(plain.report.made_upright, 0u);
   for (const double degrees : {0.005, 0.05, 0.4, 2.5}) {
     for (const Eigen::Vector3d& about :
@@ -115,6 +116,7 @@ TEST(ImportedWorld, IsLevelledIfFloorAndWallsLean) {
       const ImportedWorld other =
           import_world(leaning(test::house(), degrees, about), options, "m.obj");
       EXPECT_NEAR(other.report.levelled_deg, degrees < 0.02 ? 0 : degrees, 1e-3);
+      EXPECT_EQ(other.report.floor_slope_deg, 0);
       EXPECT_EQ(other.world.loose.segments_m.size(), plain.world.loose.segments_m.size());
       EXPECT_EQ(count_upright(other.world), count_upright(plain.world)) << degrees;
     }
@@ -167,7 +169,7 @@ TEST(ImportedWorld, EdgesStayAtTheirSurfaces) {
   }
 }
 
-// A floor that rises between upright walls stays as it is.
+// A floor that rises between upright walls stays as it is, and is told.
 TEST(ImportedWorld, IsNotLevelledByARamp) {
   Mesh mesh = test::house(0, false);
   add_rectangle(mesh, {0, 0, 0}, {8.1, 0, 0.3}, {0, 3, 0});
@@ -175,7 +177,9 @@ TEST(ImportedWorld, IsNotLevelledByARamp) {
   ImportOptions options;
   options.up_axis = 2;
   options.unit_m = 1;
-  EXPECT_EQ(import_world(mesh, options, "m.obj").report.levelled_deg, 0);
+  const ImportReport report = import_world(mesh, options, "m.obj").report;
+  EXPECT_EQ(report.levelled_deg, 0);
+  EXPECT_NEAR(report.floor_slope_deg, std::atan2(0.3, 8.1) * 180 / std::numbers::pi, 1e-3);
 }
 
 // Property: a building that was turned and written in whole millimetres has the edges of the one

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/base/shown_text.h"
+#include "calib/base/small_letters.h"
 
 namespace vernier::internal {
 namespace {
@@ -55,14 +56,6 @@ bool is_near(const Nearest& found, std::string_view word) {
   return 2 * found.distance <= std::max(size, std::size_t{2});
 }
 
-std::string in_small_letters(std::string_view word) {
-  std::string small(word);
-  for (char& c : small) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return small;
-}
-
 std::string_view without_unit(std::string_view key) {
   constexpr std::array<std::string_view, 11> units{"_px", "_px2", "_m",   "_m2",  "_cm",     "_mm",
                                                    "_s",  "_ms",  "_rad", "_deg", "_degrees"};
@@ -102,7 +95,7 @@ std::optional<std::string> misspelt_word(std::string_view word,
 std::optional<std::string> misspelt_key(std::string_view key,
                                         const std::vector<std::string_view>& known) {
   if (std::find(known.begin(), known.end(), key) != known.end()) return {};
-  const std::string small = in_small_letters(key.substr(0, compared_bytes));
+  const std::string small = small_letters(std::string(key.substr(0, compared_bytes)));
   for (const std::string_view one : known) {
     if (small == one || without_unit(small) == without_unit(one)) return std::string(one);
   }

@@ -22,8 +22,8 @@ std::optional<std::string> near_word(std::string_view word,
 std::optional<std::string> misspelt_word(std::string_view word,
                                          const std::vector<std::string_view>& known);
 
-/// The same for a key of a file; the known one is meant too by one in capitals, or without its unit
-/// (as _px) or with another.
+/// The same for a key of a file: a known key in capitals, without its unit (such as _px) or with
+/// another one counts as misspelt too.
 std::optional<std::string> misspelt_key(std::string_view key,
                                         const std::vector<std::string_view>& known);
 

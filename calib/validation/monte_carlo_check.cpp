@@ -175,7 +175,8 @@ constexpr int fewest_trials(int parameters) { return 2 * parameters; }
 
 void require_enough_trials(int parameters, int trials) {
   if (parameters == 0) {
-    throw Error("Monte-Carlo check", "no parameter is free", "free one, or do without this check");
+    throw Error("Monte-Carlo check", "no parameter is free",
+                "check a calibration with free parameters");
   }
   if (trials < fewest_trials(parameters)) {
     throw Error("Monte-Carlo check",

@@ -58,8 +58,8 @@ void require_enough_trials(const Eigen::MatrixXd& covariance, int trials);
 /// problem.pixel_sigma_px (over the square root of a corner's weight), each with the mean of every
 /// prior drawn from that prior about state.rig. A view's noise is drawn by (trial, frame, camera).
 /// `covariance` is full size, zero for held parameters. Copies are solved by Resolver from `state`.
-/// Throws Error if the covariance has another size or fewer than 2 q copies can be solved; before
-/// the first one is, if fewer are asked for.
+/// Throws Error if the covariance has another size or fewer than 2 q copies can be solved. Fewer
+/// trials than 2 q are refused before any is solved.
 MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                                   const BoardState& state,
                                   const ReprojectionProblem& problem,

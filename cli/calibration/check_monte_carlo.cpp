@@ -49,7 +49,7 @@ CheckSection check_by_monte_carlo(const CheckedProblem& p, const MonteCarloResul
   if (!check.scatter_matches_covariance()) {
     part.failures.push_back(fmt::format(
         "Monte Carlo scatter disagrees with the covariance: {} (a correct covariance fails in up "
-        "to 3 % of checks; more --trials tell)",
+        "to 3 % of checks; give more --trials to tell)",
         fmt::join(check.departures(), "; ")));
   }
   return part;

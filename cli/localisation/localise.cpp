@@ -120,13 +120,14 @@ std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
                                      [](const RecordedLooks& v) { return v.looks.size() > 1; });
   if (!uses_looks && further > 0) {
     session.warn(fmt::format("--method {} uses the first look alone, and {} {} more",
-                             options.method, further, further == 1 ? "view has" : "views have"));
+                             options.method, counted(further, "view"),
+                             further == 1 ? "has" : "have"));
   }
   std::vector<LocalisedQuery> queries;
   for (std::size_t i = 0; i < recorded.views.size(); ++i) {
     const RecordedLooks& seen = recorded.views[i];
     const PlaceView& first = seen.looks[0].view;
-    for (std::size_t k = 0; k < seen.looks.size(); ++k) {
+    for (std::size_t k = 0; k < (uses_looks ? seen.looks.size() : 1); ++k) {
       const std::string name = recorded.names[i] + (k > 0 ? fmt::format(", look {}", k + 1) : "");
       check_cameras(seen.looks[k].view, map, options, name);
     }

@@ -155,13 +155,15 @@ std::string next_looks_text(const std::vector<LocalisedQuery>& queries) {
   std::string text;
   int asked = 0;
   for (const LocalisedQuery& query : queries) {
-    if (query.answer.next_turn_rad == 0 || ++asked > most_shown) continue;
+    const LocalisationAnswer& answer = query.answer;
+    if (answer.status == LocalisationStatus::answered || answer.next_turn_rad == 0) continue;
+    if (++asked > most_shown) continue;
     text += fmt::format("{}{}: {:+.0f} deg", text.empty() ? "" : ", ", query.name,
-                        degrees * query.answer.next_turn_rad);
+                        degrees * answer.next_turn_rad);
   }
   if (asked == 0) return "";
   if (asked > most_shown) text += fmt::format(", and {} more (--json)", asked - most_shown);
-  return "a further look, turned from the first, would tell more: " + text + "\n";
+  return "a further look, turned from the first (+: to the left), would tell more: " + text + "\n";
 }
 
 }  // namespace

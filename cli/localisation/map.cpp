@@ -40,6 +40,7 @@ struct MakeMapOptions {
 /// Nodes of recorded views: each needs its pose, and one look.
 std::vector<MapNode> nodes_of(const NamedViews& recorded, const std::string& place) {
   std::vector<MapNode> nodes;
+  const Rig* rig = nullptr;
   for (std::size_t i = 0; i < recorded.views.size(); ++i) {
     const RecordedLooks& seen = recorded.views[i];
     if (!seen.pose) {
@@ -48,6 +49,8 @@ std::vector<MapNode> nodes_of(const NamedViews& recorded, const std::string& pla
     }
     for (const Look& look : seen.looks) {
       const Pose2D& first = *seen.pose;
+      if (rig == nullptr) rig = look.view.rig.get();
+      if (look.view.rig) check_one_rig(*rig, *look.view.rig, place, recorded.names[i]);
       nodes.push_back({{first.x_m, first.y_m, first.heading_rad + look.turn_rad}, look.view});
     }
   }
@@ -122,9 +125,7 @@ TopologicalMap recorded_map(const MakeMapOptions& options, Session& session) {
   const NamedViews recorded = read_recorded(options.views, session);
   const std::string place =
       options.views.features.empty() ? options.views.poses : options.views.features;
-  const TopologicalMap map{nodes_of(recorded, place)};
-  check_one_rig(map, place);
-  return map;
+  return {nodes_of(recorded, place)};
 }
 
 void make(const MakeMapOptions& options, const CLI::App& verb, Session& session) {

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -68,17 +67,13 @@ void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string
   throw Error(map_name, "was recorded with " + other, "record the map with the rig that asks");
 }
 
-void check_one_rig(const TopologicalMap& map, const std::string& place) {
-  const Rig* first = nullptr;
-  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
-    const Rig* rig = map.nodes[i].view.rig.get();
-    if (rig == nullptr) continue;
-    if (first == nullptr) first = rig;
-    const std::string other = rig == first ? "" : how_other(*first, *rig);
-    if (other.empty()) continue;
-    throw Error(fmt::format("{}: node {}", place, i + 1),
-                "those before were recorded with " + other, "make a map for each rig");
-  }
+void check_one_rig(const Rig& first,
+                   const Rig& rig,
+                   const std::string& file,
+                   const std::string& view) {
+  const std::string other = how_other(first, rig);
+  if (other.empty()) return;
+  throw Error(file, view + ": those before were taken with " + other, "make a map for each rig");
 }
 
 }  // namespace vernier::cli

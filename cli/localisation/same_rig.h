@@ -16,8 +16,11 @@ namespace vernier::cli {
 /// can hold of them depends on its cameras; a new calibration of the same rig differs by far less.
 void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name);
 
-/// Throws Error(place, node) if the nodes of a map were not recorded with one rig, by the same
-/// limits.
-void check_one_rig(const TopologicalMap& map, const std::string& place);
+/// Throws Error(file) if a view of a new map was not taken with the rig of the first one, by the
+/// same limits.
+void check_one_rig(const Rig& first,
+                   const Rig& rig,
+                   const std::string& file,
+                   const std::string& view);
 
 }  // namespace vernier::cli

@@ -133,10 +133,11 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.
-    constexpr double negligible = 1e-3;
     constexpr double least = 1e-12;  // 0 would say that none is stated
-    const double share = m.probability < negligible ? 1 : share_within_success(m.best.information);
-    const double probability = options_.stages.compare ? std::max(m.probability * share, least) : 0;
+    const double probability =
+        options_.stages.compare
+            ? std::max(m.probability * share_within_success(m.best.information), least)
+            : 0;
     result.modes.push_back({m.best.pose, m.best.node, probability, m.best.score});
   }
   std::stable_sort(
@@ -185,9 +186,11 @@ double LineLocaliser::telling_turn(std::span<const PoseMode> modes,
     const bool taken = std::any_of(query.looks.begin(), query.looks.end(), [&](const Seen& look) {
       return std::abs(std::remainder(look.turn_rad - turn, 2 * std::numbers::pi)) < known_rad;
     });
+    if (taken) continue;
     const MapPart a = map_part(turned(poses[0], turn), query);
+    if (a.node < 0) continue;
     const MapPart b = map_part(turned(*rival, turn), query);
-    if (taken || a.node < 0 || b.node < 0) continue;
+    if (b.node < 0) continue;
     const ComparedView view_a = predicted_view(*a.lines, a.pose_in_node, camera, query.room);
     const ComparedView view_b = predicted_view(*b.lines, b.pose_in_node, camera, query.room);
     const AgreementOptions options = fine_agreement();

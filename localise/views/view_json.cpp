@@ -256,7 +256,7 @@ Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 void check_spelling(const JsonNode& node, const std::vector<std::string_view>& known) {
   if (!node.json().is_object()) return;
   for (const auto& [key, value] : node.json().items()) {
-    if (const auto meant = misspelt_key(key, known)) {
+    if (const auto meant = misspelt_key(key, known); meant && !node.has(*meant)) {
       throw Error(node.place(), "has an unknown key " + in_quotes(key),
                   "did you mean \"" + *meant + "\"?");
     }

@@ -18,7 +18,8 @@ namespace vernier::localise::internal {
 
 using Json = nlohmann::ordered_json;
 
-/// Throws Error for a key that is nearly one of the known (misspelt_key); others are passed over.
+/// Throws Error for a key that is nearly one of the known (misspelt_key) which is not there; others
+/// are passed over.
 void check_spelling(const vernier::internal::JsonNode& node,
                     const std::vector<std::string_view>& known);
 

@@ -30,11 +30,11 @@ struct CellSummary {
   std::string why_no_interval;            ///< "needs 6 maps, has 1"; empty if there is an interval
   Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
   double coverage = 0;                    ///< fraction answered
-  double success_when_answered = 0;       ///< NaN without an answer
-  double best_guess_success = 0;          ///< where an unsure localiser's best guess counts too
-  int failed = 0;                         ///< trials in which the system itself failed
-  std::string why_failed;                 ///< the first one's reason, where it is stored
-  int unseen = 0;                         ///< trials in which a localiser saw too little to begin
+  double success_when_answered = std::numeric_limits<double>::quiet_NaN();  ///< without an answer
+  double best_guess_success = 0;  ///< where an unsure localiser's best guess counts too
+  int failed = 0;                 ///< trials in which the system itself failed
+  std::string why_failed;         ///< the first one's reason, where it is stored
+  int unseen = 0;                 ///< trials in which a localiser saw too little to begin
   int unsure = 0;           ///< trials of other systems than localisers that doubt their answer
   std::string why_unsure;   ///< the first one's reason, if it says one
   double node_success = 0;  ///< for the map node instead of the refined pose

@@ -78,6 +78,26 @@ TEST(LineLocaliser, ModesComeByTheirProbability) {
   EXPECT_GT(several, 20);
 }
 
+// Parallel level lines fit all along them: what such a mode has within 1 m counts for it, however
+// little that is, and it does not stand before one that is as probable and known.
+TEST(LineLocaliser, ModesAlongParallelLinesAreNotSure) {
+  const TopologicalMap map = map_of_twins();
+  LocaliserOptions options;
+  options.max_error_rate = 1;
+  const auto localiser = make_localiser("lines", map, options);
+  PlaceView parallel = map.nodes[0].view;
+  parallel.lines.clear();
+  for (int i = 0; i < 6; ++i) {
+    parallel.lines.push_back({{3, 2.0 - i, 0.3 * i}, {3, 1.5 - i, 0.3 * i}, LineKind::level, 0.01});
+  }
+  const LocalisationAnswer answer = localiser->localise(parallel);
+  for (const PoseMode& mode : answer.modes) {
+    EXPECT_LE(mode.probability, answer.probability);
+    EXPECT_GT(mode.probability, 0);
+  }
+  EXPECT_LT(answer.probability, 0.9);
+}
+
 // A look at a wall asked for nothing, and was followed by one to what a map along a path has not
 // recorded: of offices of seeds 1 to 20, one such pose was found wrongly in 19.
 TEST(LineLocaliser, AViewOfFewLinesAsksForATurnThatTheMapHolds) {

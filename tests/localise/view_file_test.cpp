@@ -202,8 +202,7 @@ TEST(ViewFile, NamesWhatIsWrong) {
       {R"({"image_lines":[],"lines":[]})", ":1", "\"image_lines_px\"?"},
       {R"({"monocular_lines":[],"lines":[]})", ":1", "\"monocular_lines_px\"?"},
       {R"({"looks":[{"lines":[]},{"turn_deg":30,"lines":[]}]})", "looks[1]", "\"turn_rad\"?"},
-      {R"({"mount":{"height_m":1,"pitch_rad":0,"pitch_deg":9},"lines":[]})", "mount",
-       "\"pitch_rad\"?"},
+      {R"({"mount":{"height_m":1,"pitch_deg":9},"lines":[]})", "mount", "\"pitch_rad\"?"},
       {R"({"mount":{"heigt_m":1,"pitch_rad":0},"lines":[]})", "mount", "\"height_m\"?"},
       {R"({"lines":[{"a_m":[2,1,0],"b_m":[2,1,1],"kind":"vertical","Sigma_m":0}]})", "lines[0]",
        "\"sigma_m\"?"},
@@ -234,6 +233,13 @@ TEST(ViewFile, MayHaveKeysOfItsOwn) {
     const auto file = folder.write("f.jsonl", "{\"" + std::string(key) + "\":1,\"lines\":[]}");
     EXPECT_EQ(error_message([&] { read_views(file); }), "") << key;
   }
+  // Also such as are nearly one that is there.
+  const auto file = folder.write(
+      "f.jsonl",
+      R"({"mount":{"height_m":1,"pitch_rad":0,"pitch_deg":0},"pose":[1,2,0],"pose_deg":[1,2,0],)"
+      R"("lines":[{"a_m":[2,1,0],"a_px":[1,2],"b_m":[2,1,1],"kind":"vertical","sigma_m":0.01,)"
+      R"("sigma_px":1}]})");
+  EXPECT_EQ(error_message([&] { read_views(file); }), "");
 }
 
 TEST(ViewFile, KnowsAViewWithoutLines) {

@@ -104,16 +104,17 @@ Mesh levelled(Mesh mesh, const Vector3d& up) {
 }
 
 double floor_slope_rad(const Mesh& mesh, double floor_m) {
-  constexpr double near_m = 1, least_slope_rad = 0.2 * degree;
-  Mesh near_floor = mesh;
-  std::erase_if(near_floor.triangles, [&](const auto& corners) {
-    const auto& [a, b, c] = corners;
-    const double z = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]).z() / 3;
-    return std::abs(z - floor_m) > near_m;
+  constexpr double near_m = 0.1, least_slope_rad = 0.2 * degree;
+  Mesh at_floor = mesh;
+  std::erase_if(at_floor.triangles, [&](const auto& corners) {
+    const auto [low, high] =
+        std::minmax({mesh.vertices[corners[0]].z(), mesh.vertices[corners[1]].z(),
+                     mesh.vertices[corners[2]].z()});
+    return low > floor_m + near_m || high < floor_m - near_m;
   });
   std::vector<std::pair<double, double>> leans;  // with areas
   double left = 0;
-  for (const auto& [normal, area] : faces_of(near_floor).level) {
+  for (const auto& [normal, area] : faces_of(at_floor).level) {
     leans.emplace_back(lean_rad(Vector3d::Zero(), normal), area);
     left += 0.5 * area;
   }

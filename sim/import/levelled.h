@@ -18,8 +18,8 @@ std::optional<Eigen::Vector3d> leaning_up(const Mesh& mesh);
 /// The mesh turned about the middle of its extent so that `up` becomes z, by the smallest rotation.
 Mesh levelled(Mesh mesh, const Eigen::Vector3d& up);
 
-/// By how much the larger half of the level surface within 1 m of a height leans from z, radians:
-/// the slope of a floor. 0 without any, and where half of it lies level to 0.2 degrees.
+/// By how much at least half of the level surface that comes within 0.1 m of a height leans from z,
+/// radians: the slope of a floor. 0 without any, and where half of it lies level to 0.2 degrees.
 double floor_slope_rad(const Mesh& mesh, double floor_m);
 
 /// By how much the line between two points leans from z, radians, 0 to π/2.

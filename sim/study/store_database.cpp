@@ -79,7 +79,7 @@ Advice advice(int code) {
               "check that the disk has space and works, then run the "
               "same command again"};
     case SQLITE_NOMEM:
-      return {"does not fit into memory", "run it where there is more"};
+      return {"out of memory", "run it where there is more"};
     default:
       return {nullptr, "delete it and run the study again: its blocks are then computed again"};
   }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/session.h"
 
@@ -16,6 +17,16 @@ std::pair<int, int> parse_limited_grid(const std::string& text,
   if (size.first * size.second > most_cells) {
     throw Error(option, fmt::format("{}x{} are more than {}", size.first, size.second, most_cells),
                 "give a smaller one");
+  }
+  return size;
+}
+
+std::pair<int, int> parse_image_grid(const std::string& text,
+                                     const std::string& option,
+                                     int most_cells) {
+  const std::pair<int, int> size = parse_limited_grid(text, option, most_cells);
+  if (size.first < 2 || size.second < 2) {
+    throw Error(option, in_quotes(text) + " is smaller than 2x2", "use a grid such as 20x15");
   }
   return size;
 }

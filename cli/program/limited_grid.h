@@ -14,4 +14,9 @@ std::pair<int, int> parse_limited_grid(const std::string& text,
                                        const std::string& option,
                                        int most_cells);
 
+/// As parse_limited_grid, for points of an image from one edge to the other: at least 2x2.
+std::pair<int, int> parse_image_grid(const std::string& text,
+                                     const std::string& option,
+                                     int most_cells);
+
 }  // namespace vernier::cli

@@ -13,9 +13,7 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
-#include "calib/base/shown_text.h"
 #include "calib/covariance.h"
-#include "calib/error.h"
 #include "calib/estimate/covariance_curvature.h"
 #include "calib/estimate/projection_difference.h"
 #include "calib/estimate/same_rig.h"
@@ -107,11 +105,7 @@ Comparison compare(const DiffArguments& options) {
       return rig_difference(found.a.rig, *found.covariance_a, found.b.rig, *found.covariance_b);
     });
   }
-  const auto [columns, rows] = parse_limited_grid(options.grid, "--grid", most_cells);
-  if (columns < 2 || rows < 2) {
-    throw Error("--grid", in_quotes(options.grid) + " is smaller than 2x2",
-                "use a grid such as 20x15");
-  }
+  const auto [columns, rows] = parse_image_grid(options.grid, "--grid", most_cells);
   const ProjectionDifferenceOptions how{
       .distances_m = parse_distances(options.distances, "--distances-m"),
       .grid = {columns, rows},

@@ -8,12 +8,11 @@
 #include <tuple>
 
 #include "calib/base/error_place.h"
-#include "calib/base/shown_text.h"
-#include "calib/error.h"
 #include "calib/estimate/covariance_curvature.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
+#include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
@@ -24,6 +23,8 @@
 
 namespace vernier::cli {
 namespace {
+
+constexpr int most_grid_points = 1'000'000;
 
 struct UncertaintyArguments {
   std::string rig, output;
@@ -46,11 +47,8 @@ RigEstimate with_choice(RigEstimate estimate,
 UncertaintyRequest request_of(const UncertaintyArguments& options, const RigEstimate& estimate) {
   UncertaintyRequest request;
   request.distances_m = parse_distances(options.distances, "--distances-m");
-  std::tie(request.columns, request.rows) = parse_grid(options.grid, "--grid");
-  if (request.columns < 2 || request.rows < 2) {
-    throw Error("--grid", in_quotes(options.grid) + " is smaller than 2x2",
-                "use a grid such as 60x45");
-  }
+  std::tie(request.columns, request.rows) =
+      parse_image_grid(options.grid, "--grid", most_grid_points);
   request.pair_sigma_px = options.pair_sigma_px;
   if (options.pair_sigma_px < 0) {
     request.pair_sigma_px = estimate.calibration ? estimate.calibration->pixel_sigma_px : 0;

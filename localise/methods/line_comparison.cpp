@@ -174,10 +174,15 @@ double LineLocaliser::telling_turn(std::span<const PoseMode> modes,
   for (const RankedNode& place : ranked) {
     poses.push_back(compose(map_.nodes[place.node].pose, place.query_in_node));
   }
-  for (const MapNode& node : map_.nodes) poses.push_back(node.pose);
-  const auto rival = std::find_if(poses.begin(), poses.end(), [&](const Pose2D& pose) {
-    return distance_m(pose, poses[0]) > 1;
-  });
+  const auto far_from_first = [&] {
+    return std::find_if(poses.begin(), poses.end(),
+                        [&](const Pose2D& pose) { return distance_m(pose, poses[0]) > 1; });
+  };
+  auto rival = far_from_first();
+  if (rival == poses.end()) {
+    for (const MapNode& node : map_.nodes) poses.push_back(node.pose);
+    rival = far_from_first();
+  }
   if (rival == poses.end()) return 0;
   const ViewCamera& camera = query.looks[0].view.camera;
   double best = 0, least = 0;

@@ -19,7 +19,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
 # Tests that run several threads and do not say so in their names are in these suites.
 filter='*Thread*:StudyRuns.*:StudyRanks.*:WarpedPair*:RaceSearches.*:SuccessCurve.*:SuccessLimits.*:SplitHalves.*'
-filter+=':OneAtATime.*:ToldStudies.*'
+filter+=':OneAtATime.*:ToldStudies.*:Systems.*'
 while (($# > 0)); do
   case "$1" in
     --jobs | --filter)

@@ -61,15 +61,18 @@ class RaisedThreadLimit {
   std::optional<tbb::global_control> control_;
 };
 
-/// Calls work(0) … work(count - 1) on the threads of an arena. `finished` orders what they did
-/// before what follows, as the end of the loop does: the thread sanitizer does not see into TBB.
+/// Calls work(0) … work(count - 1) on the threads of an arena. `begun` orders what was done before
+/// the loop before what its threads do, and `finished` that before what follows, as the loop itself
+/// does: the thread sanitizer does not see into TBB.
 template <class Work>
 void in_parallel(tbb::task_arena& arena, int count, Work work) {
-  std::atomic<int> finished = 0;
+  std::atomic<int> begun = 0, finished = 0;
+  begun.store(1, std::memory_order_release);
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, count, 1),
         [&](const tbb::blocked_range<int>& range) {
+          [[maybe_unused]] const int seen = begun.load(std::memory_order_acquire);
           for (int i = range.begin(); i < range.end(); ++i) {
             work(i);
             finished.fetch_add(1, std::memory_order_release);

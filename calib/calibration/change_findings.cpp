@@ -16,6 +16,7 @@
 #include "calib/calibration/frame_scatter.h"
 #include "calib/calibration/residual_diagnosis.h"
 #include "calib/error.h"
+#include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/solver/normal_equations.h"
 
@@ -33,17 +34,18 @@ std::string camera_words(const Rig& rig, int camera) {
                      rig.cameras[static_cast<std::size_t>(camera)].name);
 }
 
+std::string part_words(const FrameScatter& change, const Rig& rig) {
+  return (change.kept == Kept::pose ? "pose of " : "lens of ") + camera_words(rig, change.camera);
+}
+
 ResidualFinding split_finding(const FrameScatter& split, const Rig& rig) {
-  const std::string camera = camera_words(rig, split.camera);
   return {
       split.share,
       fmt::format("the rig changed after frame {}: another {} from there on explains {:.0f} % of "
                   "the squared residuals (its images are off by {:.1f} px rms): a camera moved, a "
                   "lens was turned, zoomed or refocused, images were cropped, or the frames are "
                   "of two rigs; calibrate the frames before and after separately",
-                  split.last_frame,
-                  split.kept == Kept::pose ? "pose of " + camera : "lens of " + camera,
-                  100 * split.share, split.shift_px)};
+                  split.last_frame, part_words(split, rig), 100 * split.share, split.shift_px)};
 }
 
 ResidualFinding scatter_finding(const FrameScatter& scatter, const Rig& rig) {
@@ -66,6 +68,22 @@ ResidualFinding scatter_finding(const FrameScatter& scatter, const Rig& rig) {
               camera, scatter.shift_px, 100 * scatter.share, scatter.worst_frame)};
 }
 
+/// The changes that explain most, where they explain far more than chance does.
+struct BestChanges {
+  const FrameScatter* split = nullptr;
+  const FrameScatter* scatter = nullptr;
+};
+
+BestChanges best_changes(const std::vector<FrameScatter>& all) {
+  BestChanges found;
+  for (const FrameScatter& s : all) {
+    if (!(s.f_ratio >= least_f)) continue;
+    const FrameScatter*& best = s.is_split ? found.split : found.scatter;
+    if (!best || s.share > best->share) best = &s;
+  }
+  return found;
+}
+
 }  // namespace
 
 std::optional<ResidualFinding> change_finding(const BoardObservations& observations,
@@ -77,13 +95,7 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
   } catch (const Error&) {  // a view determines no pose: other checks name it
     return {};
   }
-  const FrameScatter* split = nullptr;
-  const FrameScatter* scatter = nullptr;
-  for (const FrameScatter& s : all) {
-    if (!(s.f_ratio >= least_f)) continue;
-    const FrameScatter*& best = s.is_split ? split : scatter;
-    if (!best || s.share > best->share) best = &s;
-  }
+  const auto [split, scatter] = best_changes(all);
   if (split && split->share >= least_split_share) {
     const bool beside_motion = motion_is_estimated && split->kept == Kept::pose;
     const double enough = beside_motion ? one_change_beside_motion : one_change;
@@ -93,6 +105,32 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
   if (!scatter || scatter->share < least_scatter_share) return {};
   if (motion_is_estimated && scatter->kept == Kept::pose) return {};
   return scatter_finding(*scatter, state.rig);
+}
+
+std::optional<ResidualFinding> change_finding(const PairObservations& inliers, const Rig& rig) {
+  const std::vector<FrameScatter> all = frame_scatter(inliers, rig);
+  const auto [split, scatter] = best_changes(all);
+  if (split && split->share >= least_split_share &&
+      (!scatter || split->share >= one_change * scatter->share)) {
+    return ResidualFinding{
+        split->share,
+        fmt::format("the rig changed after image pair {}: another {} from there on explains "
+                    "{:.0f} % of the squared residuals (its matches are off by {:.1f} px rms): a "
+                    "camera moved, a lens was turned, zoomed or refocused, images were cropped, or "
+                    "the image pairs are of two rigs; calibrate those before and after separately",
+                    split->last_frame, part_words(*split, rig), 100 * split->share,
+                    split->shift_px)};
+  }
+  if (!scatter || scatter->share < least_scatter_share) return {};
+  return ResidualFinding{
+      scatter->share,
+      fmt::format("the rig is not the same in all image pairs: another {} in each explains {:.0f} "
+                  "% of the squared residuals (matches are off by {:.1f} px rms, most in image "
+                  "pair {}): the cameras are not simultaneous while the rig or the scene moves, "
+                  "they move relative to each other, or a lens changes; trigger the cameras at "
+                  "once, fix them to each other, and switch off autofocus and stabilisation",
+                  part_words(*scatter, rig), 100 * scatter->share, scatter->shift_px,
+                  scatter->worst_frame)};
 }
 
 std::optional<ResidualFinding> bent_board_finding(const BoardObservations& observations,

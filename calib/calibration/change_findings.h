@@ -7,6 +7,8 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/residual_diagnosis.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
 
 namespace vernier::internal {
 
@@ -19,6 +21,10 @@ namespace vernier::internal {
 std::optional<ResidualFinding> change_finding(const BoardObservations& observations,
                                               const BoardState& state,
                                               bool motion_is_estimated = false);
+
+/// The same of a calibration from matched pairs, image pair by image pair; a change of both is one
+/// pose or one lens of the two cameras. `inliers` and `rig` as frame_scatter takes them.
+std::optional<ResidualFinding> change_finding(const PairObservations& inliers, const Rig& rig);
 
 /// How the text of the following begins.
 inline constexpr const char* bent_board_doubt = "the board is not flat: ";

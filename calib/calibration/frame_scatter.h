@@ -6,6 +6,8 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
 
 namespace vernier::internal {
 
@@ -38,5 +40,11 @@ struct FrameScatter {
 /// fewer than four frames.
 std::vector<FrameScatter> frame_scatter(const BoardObservations& observations,
                                         const BoardState& state);
+
+/// The same of matched pairs, the image pairs being the frames: those of 12 matches or more, if
+/// there are four. `rig` may be a minimum with a prior: what another rig for all of them explains
+/// is taken off first, to first order, so that a prior that conflicts is no change. `pairs` are the
+/// inliers, with their stated noise.
+std::vector<FrameScatter> frame_scatter(const PairObservations& pairs, const Rig& rig);
 
 }  // namespace vernier::internal

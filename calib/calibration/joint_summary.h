@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+
+#include "calib/calibration/joint_minimum.h"
+#include "calib/calibration/residual_diagnosis.h"
+#include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/normal_equations.h"
+
+namespace vernier::internal {
+
+/// What is said of a joint calibration: `plain` are the equations of the inliers in the free
+/// directions, with priors, and `bound` is the inverse of their information.
+CalibrationSummary summary_of(const JointMinimum& joint,
+                              const JointEvidence& evidence,
+                              const PairObservations& inliers,
+                              const ReducedNormalEquations& plain,
+                              const Eigen::MatrixXd& bound);
+
+/// Adds warnings about the result. A change between image pairs
+/// (calib/calibration/change_findings.h) stands for what follows from it: large residuals, and many
+/// outliers.
+void warn(const JointCalibration& joint,
+          std::size_t pairs,
+          const std::optional<ResidualFinding>& change,
+          const JointOptions& options,
+          CalibrationSummary& summary);
+
+}  // namespace vernier::internal

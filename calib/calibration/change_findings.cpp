@@ -107,13 +107,13 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
   return scatter_finding(*scatter, state.rig);
 }
 
-std::optional<ResidualFinding> change_finding(const PairObservations& inliers, const Rig& rig) {
+std::optional<PairChange> change_finding(const PairObservations& inliers, const Rig& rig) {
   const std::vector<FrameScatter> all = frame_scatter(inliers, rig);
   const auto [split, scatter] = best_changes(all);
   if (split && split->share >= least_split_share &&
       (!scatter || split->share >= one_change * scatter->share)) {
-    return ResidualFinding{
-        split->share,
+    return PairChange{
+        split->shift_px,
         fmt::format("the rig changed after image pair {}: another {} from there on explains "
                     "{:.0f} % of the squared residuals (its matches are off by {:.1f} px rms): a "
                     "camera moved, a lens was turned, zoomed or refocused, images were cropped, or "
@@ -122,8 +122,8 @@ std::optional<ResidualFinding> change_finding(const PairObservations& inliers, c
                     split->shift_px)};
   }
   if (!scatter || scatter->share < least_scatter_share) return {};
-  return ResidualFinding{
-      scatter->share,
+  return PairChange{
+      scatter->shift_px,
       fmt::format("the rig is not the same in all image pairs: another {} in each explains {:.0f} "
                   "% of the squared residuals (matches are off by {:.1f} px rms, most in image "
                   "pair {}): the cameras are not simultaneous while the rig or the scene moves, "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -22,9 +23,19 @@ std::optional<ResidualFinding> change_finding(const BoardObservations& observati
                                               const BoardState& state,
                                               bool motion_is_estimated = false);
 
-/// The same of a calibration from matched pairs, image pair by image pair; a change of both is one
-/// pose or one lens of the two cameras. `inliers` and `rig` as frame_scatter takes them.
-std::optional<ResidualFinding> change_finding(const PairObservations& inliers, const Rig& rig);
+/// What changed between the image pairs of a calibration from matches.
+struct PairChange {
+  double shift_px = 0;  ///< rms displacement of the matches that it is equal to
+  std::string text;     ///< cause, figures and remedy
+
+  /// Smaller ones are in the covariance, which is clustered by image pair: a board held by hand
+  /// before cameras that are not quite simultaneous leaves 0.2 px in a good real set.
+  bool is_doubtful() const { return shift_px >= 0.5; }
+};
+
+/// The same of matched pairs, image pair by image pair, with the same limits; `inliers` and `rig`
+/// as frame_scatter takes them.
+std::optional<PairChange> change_finding(const PairObservations& inliers, const Rig& rig);
 
 /// How the text of the following begins.
 inline constexpr const char* bent_board_doubt = "the board is not flat: ";

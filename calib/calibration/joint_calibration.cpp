@@ -24,7 +24,6 @@
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
 #include "calib/calibration/pair_sides.h"
-#include "calib/calibration/residual_diagnosis.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
@@ -220,7 +219,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
     estimate.calibration->warnings.push_back(
         "the views are of different boards; the warp estimated for each is taken as known");
   }
-  std::optional<ResidualFinding> change;
+  std::optional<PairChange> change;
   if (inliers.size() > 0) change = change_finding(inliers, joint.state.rig);
   warn(result, evidence.pairs.size(), change, options, *estimate.calibration);
   estimate.evidence = merged_evidence(joint.boards, joint.state);

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "calib/board_state.h"
+#include "calib/calibration/change_findings.h"
 #include "calib/calibration/joint_minimum.h"
-#include "calib/calibration/residual_diagnosis.h"
 #include "calib/covariance.h"
 #include "calib/estimate/observability.h"
 #include "calib/joint_calibration.h"
@@ -105,10 +105,12 @@ CalibrationSummary summary_of(const JointMinimum& joint,
 
 void warn(const JointCalibration& joint,
           std::size_t pairs,
-          const std::optional<ResidualFinding>& change,
+          const std::optional<PairChange>& change,
           const JointOptions& options,
           CalibrationSummary& summary) {
-  if (change) summary.trust_warnings.push_back(change->text);
+  if (change) {
+    (change->is_doubtful() ? summary.trust_warnings : summary.warnings).push_back(change->text);
+  }
   const std::size_t out = summary.pair_outliers.size();
   if (3 * out > pairs && !change) {
     summary.trust_warnings.push_back(

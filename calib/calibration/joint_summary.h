@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "calib/calibration/change_findings.h"
 #include "calib/calibration/joint_minimum.h"
-#include "calib/calibration/residual_diagnosis.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
@@ -28,7 +28,7 @@ CalibrationSummary summary_of(const JointMinimum& joint,
 /// outliers.
 void warn(const JointCalibration& joint,
           std::size_t pairs,
-          const std::optional<ResidualFinding>& change,
+          const std::optional<PairChange>& change,
           const JointOptions& options,
           CalibrationSummary& summary);
 

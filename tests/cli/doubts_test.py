@@ -148,6 +148,23 @@ class Sides(Case):
         return vernier('calibrate', '--pairs', self.folder / 'p.csv', '--prior',
                        self.prior(change=self.loose), '-o', self.folder / 'out.json')
 
+    def test_image_pairs_that_are_not_simultaneous(self):
+        self.pairs_file(1.5, 30, False)
+        header, *lines = (self.folder / 'p.csv').read_text().split()
+        changed = []
+        for line in lines:
+            pair, *place, sigma = line.split(',')
+            place = [float(p) for p in place]
+            place[3] += (3, -3, 1, -1)[int(pair)]
+            if 1 < place[3] < 238:
+                changed.append(','.join(map(str, [pair, *place, sigma])))
+        (self.folder / 'p.csv').write_text('\n'.join([header, *changed]) + '\n')
+        done = self.calibrated()
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('the rig is not the same in all image pairs', done.stderr)
+        self.assertIn('not simultaneous', done.stderr)
+        self.assertNotIn('their stated noise', done.stderr)  # follows from it
+
     def test_exchanged_pairs_of_a_deep_scene_are_refused(self):
         self.pairs_file(1.5, 30, True)
         done = self.calibrated()

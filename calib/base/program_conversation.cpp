@@ -42,7 +42,7 @@ ProgramConversation::ProgramConversation(const std::vector<std::string>& words) 
   posix_spawn_file_actions_adddup2(&actions, input_.theirs(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, output_.theirs(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, error_output_.theirs(), STDERR_FILENO);
-  const int failed = spawn_program(words, actions, true, child_);
+  const int failed = spawn_program(words, actions, child_);
   posix_spawn_file_actions_destroy(&actions);
   if (failed) {
     child_ = 0;

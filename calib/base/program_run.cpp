@@ -128,14 +128,12 @@ std::vector<std::string> command_words(const std::string& command, const std::st
 
 int spawn_program(const std::vector<std::string>& words,
                   posix_spawn_file_actions_t& actions,
-                  bool in_own_group,
                   pid_t& child) {
   posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  short flags = with_usual_signals(attributes);
-  if (in_own_group) flags |= POSIX_SPAWN_SETPGROUP;
-  posix_spawnattr_setflags(&attributes, flags);
+  const short flags = with_usual_signals(attributes);
+  posix_spawnattr_setflags(&attributes, static_cast<short>(flags | POSIX_SPAWN_SETPGROUP));
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -143,7 +141,7 @@ int spawn_program(const std::vector<std::string>& words,
   const auto lock = hold_off_abandoning();
   const int failed =
       posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
-  if (!failed) note_child(child, in_own_group);
+  if (!failed) note_child(child);
   posix_spawnattr_destroy(&attributes);
   return failed;
 }
@@ -173,7 +171,7 @@ ProgramRun run_program(const std::vector<std::string>& words, double time_limit_
   posix_spawn_file_actions_adddup2(&actions, output.theirs(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, complaint.theirs(), STDERR_FILENO);
   pid_t child = 0;
-  run.start_error = spawn_program(words, actions, time_limit_s > 0, child);
+  run.start_error = spawn_program(words, actions, child);
   posix_spawn_file_actions_destroy(&actions);
   output.close_theirs();
   complaint.close_theirs();

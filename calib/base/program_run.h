@@ -32,12 +32,11 @@ class TemporaryFolder {
 /// nothing else of it. Throws Error(`place`) for an unclosed quote.
 std::vector<std::string> command_words(const std::string& command, const std::string& place);
 
-/// Starts a program, searched in PATH, without a shell, with usual signals, and notes it
-/// (unfinished_work.h). It inherits no descriptor but what `actions` gives it as the first three.
-/// Returns errno.
+/// Starts a program, searched in PATH, without a shell, with usual signals and in a process group
+/// of its own, and notes it (unfinished_work.h). It inherits no descriptor but what `actions` gives
+/// it as the first three. Returns errno.
 int spawn_program(const std::vector<std::string>& words,
                   posix_spawn_file_actions_t& actions,
-                  bool in_own_group,
                   pid_t& child);
 
 /// Exit state and output of a program.
@@ -53,9 +52,8 @@ struct ProgramRun {
 };
 
 /// Runs a program, searched in PATH, with empty standard input and without a shell. It inherits no
-/// descriptor and no changed signal. With a time
-/// limit (0: none) the program and its children are killed when it expires; the program then runs
-/// in its own process group, which the terminal's interrupt does not reach.
+/// descriptor and no changed signal. When the time limit (0: none) expires, the program and its
+/// children are killed.
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s = 0);
 
 }  // namespace vernier::internal

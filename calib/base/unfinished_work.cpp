@@ -19,15 +19,10 @@ struct UnfinishedPath {
   Unfinished kind;
 };
 
-struct Child {
-  pid_t id;
-  bool whole_group;
-};
-
 struct UnfinishedWork {
   std::recursive_mutex mutex;
   std::vector<UnfinishedPath> paths;
-  std::vector<Child> children;
+  std::vector<pid_t> children;
 };
 
 UnfinishedWork& work() {
@@ -37,10 +32,14 @@ UnfinishedWork& work() {
   return *only;
 }
 
+/// Also where another thread, or a program that is about to end, adds to it meanwhile.
 void remove_with_content(const std::string& folder) noexcept {
+  constexpr int tries = 100;
   try {
     std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
+    for (int i = 0; i < tries && std::filesystem::exists(folder, ignored); ++i) {
+      std::filesystem::remove_all(folder, ignored);
+    }
   } catch (const std::bad_alloc&) {  // what is left is in a temporary folder
     return;
   }
@@ -69,14 +68,14 @@ void forget_unfinished(const std::filesystem::path& path) noexcept {
   if (found != paths.rend()) paths.erase(std::next(found).base());
 }
 
-void note_child(pid_t child, bool whole_group) {
+void note_child(pid_t child) {
   const std::lock_guard lock(work().mutex);
-  work().children.push_back({child, whole_group});
+  work().children.push_back(child);
 }
 
 void forget_child(pid_t child) noexcept {
   const std::lock_guard lock(work().mutex);
-  std::erase_if(work().children, [&](const Child& one) { return one.id == child; });
+  std::erase(work().children, child);
 }
 
 std::unique_lock<std::recursive_mutex> hold_off_abandoning() {
@@ -85,9 +84,7 @@ std::unique_lock<std::recursive_mutex> hold_off_abandoning() {
 
 void abandon_unfinished_work() noexcept {
   work().mutex.lock();  // for good
-  for (const Child& child : work().children) {
-    ::kill(child.whole_group ? -child.id : child.id, SIGKILL);
-  }
+  for (const pid_t child : work().children) ::kill(-child, SIGKILL);
   const std::vector<UnfinishedPath>& paths = work().paths;
   for (std::size_t i = paths.size(); i-- > 0;) {  // what was made last first
     if (paths[i].kind == Unfinished::folder) {

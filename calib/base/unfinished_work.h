@@ -23,17 +23,17 @@ enum class Unfinished {
 void note_unfinished(const std::filesystem::path& path, Unfinished kind);
 void forget_unfinished(const std::filesystem::path& path) noexcept;
 
-/// A running program; `whole_group` if it leads a process group of its own.
-void note_child(pid_t child, bool whole_group);
+/// A running program, which leads a process group of its own.
+void note_child(pid_t child);
 void forget_child(pid_t child) noexcept;
 
 /// While it is held, abandon_unfinished_work() waits: for the renames of one set of outputs, which
 /// must not be cut in two, and for the start of a program.
 std::unique_lock<std::recursive_mutex> hold_off_abandoning();
 
-/// Kills the programs and removes the files and folders noted; needs no memory but for folders with
-/// content. From then on every other function of
-/// this header blocks for ever, so that other threads make nothing new while the process ends.
+/// Kills the programs, with what they started, and removes the files and folders noted; needs no
+/// memory but for folders with content. From then on every other function of this header blocks for
+/// ever, so that other threads make nothing new while the process ends.
 void abandon_unfinished_work() noexcept;
 
 }  // namespace vernier::internal

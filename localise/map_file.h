@@ -20,8 +20,9 @@ void write_map(const std::filesystem::path& file, const TopologicalMap& map);
 /// that is not finite, and more than 1,000,000 nodes, 10,000 lines or corners in one.
 TopologicalMap read_map(const std::filesystem::path& file);
 
-/// Adds nodes to a map in a file: the parts that it holds are checked and kept to the byte. Throws
-/// Error as both of the above.
+/// Adds nodes to a map in a file: the parts that it holds are checked and kept to the byte. Of
+/// several that extend one map at once, each adds to what those before it left. Throws Error as
+/// both of the above.
 void extend_map(const std::filesystem::path& file, std::span<const MapNode> nodes);
 
 }  // namespace vernier::localise

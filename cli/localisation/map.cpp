@@ -188,7 +188,7 @@ void add_map(CLI::App& app, Session& session) {
       ->capture_default_str();
   maker->add_option("-o,--output", o->output, "map file");
   maker->add_option("--extend", o->extend, "map file to which the views are added");
-  check_files_written(*maker, {"--output"});
+  check_files_written(*maker, {"--output", "--extend"});
   maker->callback(
       [o, maker, &session] { session.action = [=, &session] { make(*o, *maker, session); }; });
 

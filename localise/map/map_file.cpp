@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -26,6 +27,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "localise/map/corner_part.h"
+#include "localise/map/extension_turn.h"
 #include "localise/map/native_bytes.h"
 #include "localise/map/part_checksum.h"
 #include "localise/place.h"
@@ -98,10 +100,14 @@ class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0) {
+      throw Error(file.string(), std::string("cannot be read: ") + std::strerror(errno),
+                  "check its name and permissions");
+    }
     struct stat status {};
-    if (descriptor < 0 || ::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-      const bool is_folder = descriptor >= 0 && S_ISDIR(status.st_mode);
-      if (descriptor >= 0) ::close(descriptor);
+    if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+      const bool is_folder = S_ISDIR(status.st_mode);
+      ::close(descriptor);
       throw Error(file.string(), is_folder ? "is a folder" : "is no file that can be read",
                   is_folder ? "name a map file" : "check its name and permissions");
     }
@@ -355,6 +361,7 @@ TopologicalMap read_map(const std::filesystem::path& file) {
 }
 
 void extend_map(const std::filesystem::path& file, std::span<const MapNode> nodes) {
+  const ExtensionTurn turn(file);
   const MappedFile mapped(file);
   std::string rig;
   const std::string place = file.string();

@@ -3,6 +3,8 @@
 #include "localise/map_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstddef>
 #include <fstream>
@@ -203,6 +205,32 @@ TEST(MapFile, ExtendingGivesWhatWritingAllGives) {
   extend_map(file, other.nodes);
   map.nodes.insert(map.nodes.end(), other.nodes.begin(), other.nodes.end());
   expect_same(map, read_map(file));
+}
+
+TEST(MapFile, KeepsWhatSeveralAddAtOnce) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  const TopologicalMap map = some_rooms(3);
+  write_map(file, map);
+  constexpr std::size_t writers = 6, turns = 10;
+  const auto add = [&]() noexcept {
+    for (std::size_t k = 0; k < turns; ++k) extend_map(file, map.nodes);
+  };
+  std::vector<pid_t> processes;
+  for (std::size_t i = 0; i < writers; ++i) {
+    const pid_t process = ::fork();
+    if (process == 0) {
+      add();
+      ::_exit(0);
+    }
+    processes.push_back(process);
+  }
+  for (const pid_t process : processes) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(process, &status, 0), process);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(read_map(file).nodes.size(), map.nodes.size() * (1 + writers * turns));
 }
 
 TEST(MapFile, CutsAndFlippedBitsAreRefused) {

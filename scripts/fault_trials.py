@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""Kills every verb that writes at random moments and looks at what it leaves.
+"""Kills or signals every verb that writes at random moments and looks at what it leaves.
 
-    fault_trials.py PROGRAM [--kills 1000] [--seed 1] [--jobs 1] [--verb NAME ...]
+    fault_trials.py PROGRAM [--signals] [--kills 1000] [--seed 1] [--jobs 1] [--verb NAME ...]
 
 Each trial starts a verb in a folder of its own, with or without old outputs there, and sends SIGKILL:
 half of them after a random part of the time that the verb takes, half within 0.1 s of the first file
@@ -11,6 +11,12 @@ that it makes. Then
 - every output file is the old one, or the new one complete, or absent where there was no old one;
 - what else is there has a name that docs/robustness.md lists (.vernier-*.tmp, SQLite's companions);
 - the same call again gives the result of an undisturbed one.
+With --signals it sends INT, TERM or HUP instead, and asks for more (but repeats only what goes on with
+the folder that was left):
+- the program ended by that signal, or as usual if it was quicker, with one line of its own at most;
+- no temporary file or folder, and no empty folder of outputs, is left;
+- the outputs are all old or all new, but for the folder of a study;
+- none of the programs that it had started runs on.
 Exit code 1 if a trial fails. Times in results are not compared.
 """
 import argparse
@@ -35,37 +41,61 @@ sys.dont_write_bytecode = True
 import verb_calls
 
 OLD = b'an old file\n'
-STUDIES = ('study', 'study_merge')  # whose output is the folder of a study
-LEFTOVERS = ('.vernier-*.tmp', 'results*.sqlite-wal', 'results*.sqlite-shm',
-             'results*.sqlite-journal', 'results*.sqlite', '*.lock')
+COMPANIONS = ('results*.sqlite-wal', 'results*.sqlite-shm', 'results*.sqlite-journal', 'results*.sqlite',
+              '*.lock')
+TEMPORARY = '.vernier-*.tmp'
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def is_study(call):
+    """Whether its output is the folder of a study."""
+    return call.words[0] == 'study'
+
+
+def running_in(folder):
+    """Processes whose working folder it is."""
+    found = []
+    for process in pathlib.Path('/proc').iterdir():
+        try:
+            if process.name.isdigit() and os.readlink(process / 'cwd') == str(folder):
+                found.append((process / 'cmdline').read_text().replace('\0', ' '))
+        except OSError:  # it has ended, or is somebody else's
+            continue
+    return found
 
 
 class Trials:
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, signals):
         self.program = str(pathlib.Path(program).resolve())
-        self.folder = folder
+        self.folder = folder.resolve()
+        self.signals = signals
         self.inputs = folder / 'inputs'
         self.inputs.mkdir()
-        verb_calls.write_inputs(self.inputs)
-        self.reference, self.seconds = {}, {}
+        verb_calls.write_inputs(self.inputs, self.program)
+        self.reference, self.seconds, self.said = {}, {}, {}
 
-    def place(self, name):
-        folder = pathlib.Path(tempfile.mkdtemp(prefix=name + '-', dir=self.folder))
+    def place(self, call):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix=call.name + '-', dir=self.folder))
         for file in self.inputs.iterdir():
             (folder / file.name).symlink_to(file)
         (folder / 'tmp').mkdir()
+        call.prepare(folder)
         return folder
 
     def start(self, call, folder):
-        return subprocess.Popen([self.program, *map(str, call.words)], cwd=folder,
+        quiet = ['-q'] if self.signals else []
+        return subprocess.Popen([self.program, *map(str, call.words), *quiet], cwd=folder,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE, text=True, start_new_session=True,
-                                env=dict(os.environ, TMPDIR=str(folder / 'tmp')))
+                                env=dict(os.environ, TMPDIR=str(folder / 'tmp'),
+                                         SOURCE_DATE_EPOCH='1'))  # the date in PDFs
 
     def finish(self, call, folder):
         """The undisturbed call. What is wrong with it, or an empty string."""
+        call.prepare(folder)
         with self.start(call, folder) as process:
             said = process.communicate(timeout=300)[1]
+        self.said.setdefault(call.name, said)
         return '' if process.returncode == call.code else f'exit {process.returncode}: {said[-300:]}'
 
     def files(self, folder):
@@ -85,8 +115,8 @@ class Trials:
         """What a complete run leaves: its files, a store by what the program reads of it."""
         found = {name: content for name, content in self.files(folder).items()
                  if not name.endswith(('.sqlite', '-wal', '-shm', '-journal', '.lock'))
-                 and not fnmatch.fnmatch(pathlib.Path(name).name, '.vernier-*.tmp')}
-        if call.name in STUDIES:
+                 and not fnmatch.fnmatch(pathlib.Path(name).name, TEMPORARY)}
+        if is_study(call):
             done = subprocess.run([self.program, 'study', 'status', 'out', '--json'], cwd=folder,
                                   capture_output=True, text=True)
             status = json.loads(done.stdout) if done.stdout else {'failed': done.stderr}
@@ -103,7 +133,7 @@ class Trials:
 
     def learn(self, call):
         """An undisturbed run: its outcome, and the time it takes."""
-        folder = self.place(call.name)
+        folder = self.place(call)
         start = time.monotonic()
         wrong = self.finish(call, folder)
         self.seconds[call.name] = time.monotonic() - start
@@ -114,42 +144,54 @@ class Trials:
 
     def put_old_files(self, call, folder):
         for name in self.reference[call.name]:
-            if name != 'status':
+            if name != 'status' and name not in call.changes:
                 (folder / name).parent.mkdir(exist_ok=True)
                 (folder / name).write_bytes(OLD)
 
-    def faults_after_kill(self, call, folder, had_old):
+    def faults_of_files(self, call, folder, old):
         """A list of faults, and how many of the outputs are new."""
         faults, new = [], 0
         found, reference = self.files(folder), self.reference[call.name]
+        leftovers = COMPANIONS if self.signals else (*COMPANIONS, TEMPORARY)
         for name, content in found.items():
             if name in reference:
                 if content == reference[name]:
                     new += 1
-                elif not (had_old and content == OLD):
+                elif content != old.get(name):
                     faults.append(f'{name} is incomplete: {len(content)} bytes')
-            elif not any(fnmatch.fnmatch(pathlib.Path(name).name, mask) for mask in LEFTOVERS):
+            elif not any(fnmatch.fnmatch(pathlib.Path(name).name, mask) for mask in leftovers):
                 faults.append(f'{name} was left behind')
-        faults += [f'{name} is gone' for name in reference
-                   if had_old and name != 'status' and name not in found]
+        faults += [f'{name} is gone' for name in old if name not in found]
         return faults, new
+
+    def faults_of_ending(self, call, folder, how, code, said):
+        """What the signal `how` left besides files, and what was said of it."""
+        faults = []
+        if code not in (-how, call.code):
+            faults.append(f'exit {code} after {how.name}')
+        lines = [line for line in said.splitlines() if line not in self.said[call.name].splitlines()]
+        if len(lines) > 1 or lines and f'vernier: ended by {how.name}' not in lines[0]:
+            faults.append(f'said after {how.name}: {lines}')
+        faults += [f'{name} was left in TMPDIR' for name in os.listdir(folder / 'tmp')]
+        faults += [f'the empty folder {name} was left' for name in call.outputs
+                   if (folder / name).is_dir() and not os.listdir(folder / name)]
+        end = time.monotonic() + 20  # they are killed, but need not have ended yet
+        while (running := running_in(folder)) and time.monotonic() < end:
+            time.sleep(0.01)
+        return faults + [f'{words} runs on' for words in running]
 
     @staticmethod
     def wait_for_writing(process, folder):
         """Until the first new name appears beside the inputs."""
         def names():
-            return {name for at in (folder, folder / 'out', folder / 'models') if at.is_dir()
-                    for name in os.listdir(at)}
+            return {name for at in (folder, folder / 'tmp', folder / 'out', folder / 'models')
+                    if at.is_dir() for name in os.listdir(at)}
         before = names()
         while process.poll() is None and names() <= before:
-            pass
+            time.sleep(0.0002)
 
-    def trial(self, call, chance):
-        """One kill. Returns (state when killed, faults)."""
-        folder = self.place(call.name)
-        had_old = call.name not in (*STUDIES, 'tune') and chance.random() < 0.5
-        if had_old:
-            self.put_old_files(call, folder)
+    def disturb(self, call, folder, number, chance):
+        """Starts the call and sends the signal. Returns whether it had ended, its code and what it said."""
         aimed = chance.random() < 0.5
         with self.start(call, folder) as process:
             if aimed:
@@ -159,54 +201,69 @@ class Trials:
                 time.sleep(chance.random() * 1.1 * self.seconds[call.name])
             ended = process.poll() is not None
             try:
-                os.killpg(process.pid, signal.SIGKILL)
+                os.killpg(process.pid, number)
             except ProcessLookupError:
                 pass
-            process.communicate()
-        faults, new = self.faults_after_kill(call, folder, had_old)
-        every = sum(name != 'status' for name in self.reference[call.name])
-        if ended or new == every:
+            said = process.communicate(timeout=300)[1]
+        return ended, process.returncode, said
+
+    def trial(self, call, chance):
+        """One kill. Returns (state when killed, faults)."""
+        folder = self.place(call)
+        every = [name for name in self.reference[call.name] if name != 'status']
+        if not (is_study(call) or call.name == 'tune') and chance.random() < 0.5:
+            self.put_old_files(call, folder)
+        old = {name: (folder / name).read_bytes() for name in every if (folder / name).exists()}
+        how = chance.choice(SIGNALS) if self.signals else signal.SIGKILL
+        ended, code, said = self.disturb(call, folder, how, chance)
+        faults, new = self.faults_of_files(call, folder, old)
+        if self.signals:
+            faults += self.faults_of_ending(call, folder, how, code, said)
+            if 0 < new < len(every) and not is_study(call) and call.name != 'tune':
+                faults.append(f'{new} of {len(every)} outputs are new')
+        if ended or new == len(every):
             state = 'ended before' if ended else 'all new'
         else:
             state = 'some new' if new else 'none new'
-        wrong = self.finish(call, folder)
-        if wrong:
-            faults.append('again: ' + wrong)
-        elif self.outcome(call, folder) != self.reference[call.name]:
-            faults.append('again: another result')
-        shutil.rmtree(folder)
+        if call.grows or not self.signals:
+            wrong = self.finish(call, folder)
+            if wrong:
+                faults.append('again: ' + wrong)
+            elif self.outcome(call, folder) != self.reference[call.name]:
+                faults.append('again: another result')
+        shutil.rmtree(folder, ignore_errors=True)  # a killed program's child may write there still
         return state, faults
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('program')
+    parser.add_argument('--signals', action='store_true', help='INT, TERM and HUP in place of KILL')
     parser.add_argument('--kills', type=int, default=1000)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--jobs', type=int, default=1)
-    parser.add_argument('--verb', action='append')
+    parser.add_argument('--verb', action='append', help='name of a call in tests/cli/verb_calls.py')
     options = parser.parse_args()
     calls = [call for call in verb_calls.calls()
              if call.outputs and (not options.verb or call.name in options.verb)]
     failed, tally = 0, collections.defaultdict(collections.Counter)
     with tempfile.TemporaryDirectory() as folder:
-        trials = Trials(options.program, pathlib.Path(folder))
-        for call in calls:
-            trials.learn(call)
+        trials = Trials(options.program, pathlib.Path(folder), options.signals)
 
         def one(number):
             call = calls[number % len(calls)]
             return call, trials.trial(call, random.Random(f'{options.seed} {number}'))
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            list(pool.map(trials.learn, calls))
             for number, (call, (state, faults)) in enumerate(pool.map(one, range(options.kills))):
                 tally[call.name][state] += 1
                 for fault in faults:
                     print(f'trial {number}, {call.name}: {fault}')
                 failed += bool(faults)
     states = ('none new', 'some new', 'all new', 'ended before')
-    print('{:<14}'.format('verb') + ''.join(f'{state:>14}' for state in states))
+    print('{:<20}'.format('verb') + ''.join(f'{state:>14}' for state in states))
     for name, counts in tally.items():
-        print(f'{name:<14}' + ''.join(f'{counts[state]:>14}' for state in states))
+        print(f'{name:<20}' + ''.join(f'{counts[state]:>14}' for state in states))
     print(f'{options.kills} kills, {failed} trials failed')
     return 1 if failed else 0
 

@@ -374,11 +374,12 @@ class Memory(Case):
         self.assertGreater(ran_out, 3)
 
     def test_every_verb(self):
-        verb_calls.write_inputs(self.folder)
+        verb_calls.write_inputs(self.folder, PROGRAM)
         least_mb = self.least_virtual_mb()
         ran_out = set()
         for more_mb in (3, 12):
             for call in verb_calls.calls():
+                call.prepare(self.folder)
                 done = self.call(*call.words, virtual_mb=least_mb + more_mb)
                 said = f'{call.name} with {least_mb + more_mb} MB: {done.code} {done.err[-300:]}'
                 self.assertIn(done.code, (call.code, 2), said)

@@ -26,8 +26,10 @@ class Streams(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
-        cls.inputs = pathlib.Path(cls.temporary.name)
-        verb_calls.write_inputs(cls.inputs)
+        cls.inputs, cls.runs = (pathlib.Path(cls.temporary.name) / name for name in ('inputs', 'runs'))
+        cls.inputs.mkdir()
+        cls.runs.mkdir()
+        verb_calls.write_inputs(cls.inputs, PROGRAM)
         cls.reference = {}
         for call in verb_calls.calls():
             folder, done = cls.run_in_folder(call, '')
@@ -41,10 +43,10 @@ class Streams(unittest.TestCase):
     @classmethod
     def run_in_folder(cls, call, redirection):
         """In a folder of its own, with the shell's redirection."""
-        folder = pathlib.Path(tempfile.mkdtemp(dir=cls.inputs))
+        folder = pathlib.Path(tempfile.mkdtemp(dir=cls.runs))
         for file in cls.inputs.iterdir():
-            if file.is_file() or file.name == 'begun':
-                (folder / file.name).symlink_to(file)
+            (folder / file.name).symlink_to(file)
+        call.prepare(folder)
         done = subprocess.run(['sh', '-c', f'exec "$@" {redirection}', 'sh', PROGRAM,
                                *map(str, call.words)],
                               cwd=folder, capture_output=True, text=True, timeout=120)
@@ -140,6 +142,27 @@ class Streams(unittest.TestCase):
             self.assertEqual(done.returncode, 0)
         finally:
             os.close(write)
+
+    def test_a_reader_of_standard_error_that_goes_midway_changes_nothing(self):
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.runs))
+        (folder / 'posts.world.toml').symlink_to(self.inputs / 'posts.world.toml')
+        (folder / 'larger.toml').write_text(verb_calls.STUDY.replace('trials = 120', 'trials = 1200'))
+        cells = []
+        for output in ('whole', 'disturbed'):
+            words = [PROGRAM, 'study', 'larger.toml', '-o', output, '--threads', '2', '--json']
+            with subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True) as process:
+                self.assertRegex(process.stderr.readline(), '^study: ')
+                if output == 'disturbed':
+                    process.stderr.close()
+                    told = process.stdout.read()
+                else:
+                    told, said = process.communicate(timeout=300)
+                    self.assertGreater(said.count('\nstudy: blocks: '), 5)  # more was to come
+                self.assertEqual(process.wait(timeout=300), 0)
+            cells.append([{key: value for key, value in cell.items() if '_ms' not in key}
+                          for cell in json.loads(told)['cells']])
+        self.assertEqual(*cells)
 
     def test_a_standard_output_that_does_not_block_gets_all(self):
         read, write = os.pipe()

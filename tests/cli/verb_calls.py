@@ -1,11 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""One quick call of every verb, for tests that disturb the program (streams_test.py, faults_test.py
-and scripts/fault_trials.py), and a test case that calls it in a folder with their inputs."""
+"""Quick calls of every verb in its important modes, for tests that disturb the program (streams_test.py,
+faults_test.py, permissions_test.py, size_limits_test.py and scripts/fault_trials.py), and a test case
+that calls it in a folder with their inputs."""
 import dataclasses
+import functools
 import json
 import pathlib
 import random
+import shutil
 import struct
 import subprocess
 import sys
@@ -27,6 +30,17 @@ class Call:
     words: list       # of the command line, without the program
     outputs: list     # the files or folders it writes, in its folder
     code: int = 0     # its exit code
+    changes: dict = dataclasses.field(default_factory=dict)  # outputs that are copies of these inputs before
+
+    def prepare(self, folder):
+        """Makes what it changes, before every call of it."""
+        for name, source in self.changes.items():
+            (folder / name).write_bytes((folder / source).read_bytes())
+
+    @property
+    def grows(self):
+        """Whether its folder grows block by block, and is gone on with."""
+        return self.words[0] in ('study', 'tune') and self.words[1] not in ('merge', 'status')
 
 
 WORLD = '''format = "vernier/world"
@@ -51,6 +65,18 @@ yaw_deg = {20 * (i % 5)}
 STUDY = ('[study]\ntrials = 120\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
          '[world]\nfile = "posts.world.toml"\n[rig]\nfile = "nominal"\n[sweep]\n"sources.calibration" = [0, 1]\n')
 
+
+PROGRAM_STUDY = f'''[study]
+trials = 12
+[system]
+name = "program"
+command = "{sys.executable} {ROOT}/docs/examples/own_system.py"
+success_error = 0.05
+[rig]
+file = "nominal"
+[parameters]
+range_m = 4
+'''
 
 # Races the node spacing, and confirms in the same world seen from elsewhere.
 TUNE = (STUDY.replace('"sources.calibration" = [0, 1]', '"map.spacing_m" = [1, 2]') +
@@ -153,9 +179,49 @@ def write_seen(folder):
     (folder / 'K.txt').write_text('150 0 80\n0 150 60\n0 0 1\n')
 
 
-def write_inputs(folder):
-    """What the calls read, made without the program."""
+# The folders among the inputs; all but the first are made by the program.
+FOLDERS = ('begun', 'parts', 'whole', 'judged')
+
+
+@functools.cache
+def made_by(program):
+    """A folder with what the calls read of earlier ones, made once."""
+    keeper = tempfile.TemporaryDirectory()
+    made_by.keepers.append(keeper)
+    folder = pathlib.Path(keeper.name)
+    write_inputs(folder)
+    (folder / 'few.toml').write_text(STUDY.replace('trials = 120', 'trials = 12'))
+    for words in (['study', 'few.toml', '-o', 'parts', '--shard', '0/2'],
+                  ['study', 'few.toml', '-o', 'parts', '--shard', '1/2'],
+                  ['study', 'merge', 'parts', '-o', 'whole'],
+                  [*JUDGE, '--matcher', 'edge', '-o', 'judged'],
+                  ['convert', 'rig.json', '--to', 'opencv', '-o', 'rig.yml'],
+                  ['map', 'make', '--world', 'workshop', '--spacing-m', '2', '-o', 'workshop.map']):
+        done = subprocess.run([program, *words, '-q'], cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError(f'{" ".join(words)}: exit {done.returncode}: {done.stderr}')
+    return folder
+
+
+made_by.keepers = []
+
+
+def write_inputs(folder, program=None):
+    """What the calls read; what the program itself must make only if it is given."""
     folder = pathlib.Path(folder)
+    if program:
+        made = made_by(str(program))
+        for name in FOLDERS[1:]:
+            shutil.copytree(made / name, folder / name)
+        for name in ('rig.yml', 'workshop.map'):
+            shutil.copy(made / name, folder / name)
+    for image in sorted(IMAGES.glob('*0[1-3].jpg')):
+        if image.name.startswith(('left', 'right')):
+            shutil.copyfile(image, folder / image.name)
+    (folder / 'matcher.sh').write_text('cp six.pfm "$3"\n')
+    (folder / 'six.pfm').write_bytes(b'Pf\n%d %d\n-1\n' % (evaluate_test.WIDTH, evaluate_test.HEIGHT) +
+                                     struct.pack('<f', 6) * evaluate_test.WIDTH * evaluate_test.HEIGHT)
+    (folder / 'own.toml').write_text(PROGRAM_STUDY)
     for name, rows in zip(('left', 'right', 'truth'), evaluate_test.pair()):
         evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
     for name, rows in zip(('big_left', 'big_right', 'big_truth'), characterise_test.pair()):
@@ -181,31 +247,48 @@ def write_inputs(folder):
     (folder / 'known.map').write_bytes(map_file(features().splitlines()))
 
 
+PAIR = ['--left', 'left.pgm', '--right', 'right.pgm']
+JUDGE = ['evaluate', *PAIR, '--truth', 'truth.pgm', '--truth-scale', '4', '--max-disparity', '20']
+
+
 def calls():
-    pair = ['--left', 'left.pgm', '--right', 'right.pgm']
+    pair = PAIR
     board = ['--observations', 'corners.csv', '--size', '640x480']
-    truth = [*pair, '--truth', 'truth.pgm', '--truth-scale', '4', '--max-disparity', '20']
+    images = ['--left', 'left0[1-3].jpg', '--right', 'right0[1-3].jpg', '--board', '9x6', '--square-m', '0.025']
+
+    def own(name):
+        return f'{sys.executable} {ROOT}/docs/examples/{name}.py'
     return [
         Call('doctor', ['doctor'], []),
-        Call('detect', ['detect', '--left', IMAGES / 'left01.jpg', '--right', IMAGES / 'right01.jpg',
-                        '--board', '9x6', '-o', 'out.vnl'], ['out.vnl']),
+        Call('detect', ['detect', '--left', 'left01.jpg', '--right', 'right01.jpg', '--board', '9x6',
+                        '-o', 'out.vnl'], ['out.vnl']),
         Call('match', ['match', *pair, '--prior', 'rig.json', '--picture', 'out.png', '-o', 'out.csv'],
              ['out.png', 'out.csv']),
         Call('calibrate', ['calibrate', *board, '--no-model-check', '-o', 'out.json'], ['out.json']),
+        Call('calibrate_pairs', ['calibrate', '--pairs', 'pairs.csv', '--prior', 'rig.json',
+                                 '-o', 'out.json'], ['out.json']),
+        Call('calibrate_images', ['calibrate', *images, '--no-model-check', '--no-effects', '-o',
+                                  'out.json'], ['out.json']),
         Call('combine', ['combine', '--prior', 'rig.json', 'pairs.csv', '--monitor', '--drift',
                          'drift.csv', '-o', 'out.json'], ['out.json', 'drift.csv']),
         Call('check', ['check', *board, '--trials', '40'], []),
         Call('uncertainty', ['uncertainty', 'rig.json', '--distances-m', '1,inf', '--grid', '6x4',
                              '-o', 'out'], ['out']),
+        Call('uncertainty_samples', ['uncertainty', 'rig.json', '--samples', '50', '--distances-m', '2',
+                                     '--grid', '6x4', '-o', 'out'], ['out']),
         Call('sample', ['sample', 'nominal', '-n', '2000', '-o', 'out.csv'], ['out.csv']),
         Call('convert', ['convert', 'rig.json', '--to', 'mrcal', '-o', 'models/'], ['models']),
+        Call('convert_file', ['convert', 'rig.json', '--to', 'kalibr', '-o', 'out.yaml'], ['out.yaml']),
+        Call('convert_back', ['convert', 'rig.yml', '-o', 'out.json'], ['out.json']),
         Call('diff', ['diff', 'nominal', 'nominal'], []),
         Call('advise', ['advise', 'nominal', '--reduce', 'depth', '--at-m', '5'], []),
         Call('plan', ['plan', 'nominal', '--depth-error', '0.02@5m'], []),
         Call('rectify', ['rectify', '--rig', 'rig.json', *pair, '-o', 'out'], ['out']),
         Call('stereo', ['stereo', '--rig', 'rig.json', *pair, '--max-disparity', '20', '--picture',
                         'out.png', '-o', 'out'], ['out', 'out.png']),
-        Call('evaluate', ['evaluate', *truth, '--matcher', 'edge', '-o', 'out'], ['out']),
+        Call('evaluate', [*JUDGE, '--matcher', 'edge', '-o', 'out'], ['out']),
+        Call('evaluate_program', [*JUDGE, '--matcher', 'none', '--command',
+                                  'sh matcher.sh {left} {right} {output}', '-o', 'out'], ['out']),
         Call('characterise', ['characterise', '--left', 'big_left.pgm', '--right', 'big_right.pgm',
                               '--truth', 'big_truth.pgm', '--truth-scale', '4', '--max-disparity',
                               '20', '-o', 'out.toml'], ['out.toml']),
@@ -228,27 +311,49 @@ def calls():
                                 '--segments', 'out.segments'], ['out.jsonl', 'out.segments']),
         Call('drive', ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o', 'out.jsonl',
                        '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
+        Call('drive_program', ['drive', '--pose', '10,7.5,0', '--command',
+                               own('robot_controller'), '--steps', '4', '-o', 'out.jsonl',
+                               '--odometry', 'out.txt'], ['out.jsonl', 'out.txt']),
         Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],
              ['out.csv', 'out.svg']),
+        Call('servo_program', ['servo', '--trials', '1', '--threads', '1', '--source',
+                               'command=' + own('own_source'), '-o', 'out.csv'], ['out.csv']),
         Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
                         '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        Call('study_program', ['study', 'own.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('tune', ['tune', 'tune.toml', '-o', 'out', '--threads', '1'], ['out']),
         # A study without results, which the program alone can make: it says so.
         Call('study_status', ['study', 'status', 'begun'], []),
         Call('study_merge', ['study', 'merge', 'begun', '-o', 'out'], ['out'], code=3),
         Call('export', ['export', 'begun', '-o', 'out.csv'], ['out.csv'], code=3),
+        Call('study_status_whole', ['study', 'status', 'whole'], []),
+        Call('study_merge_parts', ['study', 'merge', 'parts', '-o', 'out'], ['out']),
+        Call('export_cells', ['export', 'whole', '--settings', '-o', 'out.csv'], ['out.csv']),
+        Call('export_trials', ['export', 'parts', '--trials', '-o', 'out.npy'], ['out.npy']),
         Call('lines', ['lines', '--image', 'left.pgm', '--depth', 'depth.png', '--rig', 'rig.json',
                        '--segments', 'out.segments', '-o', 'out.jsonl'], ['out.segments', 'out.jsonl']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),
+        Call('map_extend', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '--extend',
+                            'grown.map'], ['grown.map'], changes={'grown.map': 'known.map'}),
+        Call('map_world', ['map', 'make', '--world', 'posts.world.toml', '--spacing-m', '2', '--corners',
+                           '-o', 'out.map'], ['out.map']),
         Call('map_info', ['map', 'info', 'known.map'], []),
         # A few lines only: it would be unsure.
         Call('localise', ['localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal',
                           '--max-error-rate', '1', '-o', 'out.csv'], ['out.csv']),
+        Call('localise_world', ['localise', 'workshop.map', '--world', 'workshop', '-n', '3', '-o',
+                                'out.csv'], ['out.csv']),
+        Call('localise_program', ['localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal',
+                                  '--method', 'program', '--command', own('own_localiser'), '-o',
+                                  'out.csv'], ['out.csv']),
         Call('odometry', ['odometry', '--world', 'workshop', '--leg', '2', '-o', 'out.txt'],
              ['out.txt']),
         Call('report', ['report', 'nominal', '--no-proof', '-o', 'out.html'], ['out.html']),
+        Call('report_study', ['report', 'whole', '--no-proof', '--figures', 'out', '-o', 'out.html'],
+             ['out.html', 'out']),
+        Call('report_evaluation', ['report', 'judged', '-o', 'out.html'], ['out.html']),
     ]
 
 

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds everything and runs all tests, and the unit tests with sanitizers.
-# Prints the time of each part and CTest's summary at the end.
+# Prints the time of each part, what was skipped and why, and CTest's summary at the end.
 set -euo pipefail
 
 usage() {
@@ -41,7 +41,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . scripts/part_times.sh
 jobs=$(nproc)
 log=build/release/ctest.log
-rm --force "$log"
+skips=build/release/skipped.txt
+rm --force "$log" "$skips"
 
 # Wall time of tests, run in parallel; CTest does not measure their CPU time.
 print_test_times() {
@@ -56,6 +57,25 @@ print_test_times() {
       sort --field-separator=$'\t' --key=2 --numeric-sort --reverse | sed 8q)
 }
 
+# What the release tests skipped: a line with the reason of each. Programs of tests pass although some
+# of their tests are skipped, so that only CTest's own log has them.
+find_skips() {
+  local all=build/release/Testing/Temporary/LastTest.log
+  if [[ ! -f $all ]]; then return; fi
+  sed --quiet --regexp-extended "s/^.* \.\.\. skipped (['\"])(.*)\1\$/\2/p" "$all"   # unittest's
+  sed --quiet --regexp-extended '/^[^ ]+:[0-9]+: Skipped$/ { n; s/^$/without a reason/; p }' "$all" # gtest's
+  sed --quiet --regexp-extended 's/^[a-z ]+: skipped(: |, )?(.*)$/\2/p' "$all"           # our scripts'
+}
+
+print_skips() {
+  local count reason
+  printf '\n%-66s %9s\n' "release tests: skipped, and why" "tests"
+  sort "$skips" | uniq --count | sort --numeric-sort --reverse | while read -r count reason; do
+    printf '  %-64s %9d\n' "$reason" "$count"
+  done
+  printf '  %-64s %9d\n' "all" "$(wc --lines < "$skips")"
+}
+
 close() {
   local code=$? failed_part=$part_open
   end_parts
@@ -63,6 +83,7 @@ close() {
   print_part_times
   if [[ -f $log ]]; then
     print_test_times
+    if [[ -f $skips ]]; then print_skips; fi
     echo
     grep --max-count=1 'tests passed' "$log" || true
   fi
@@ -97,7 +118,11 @@ if [[ $measure == yes ]]; then
   scripts/check_build_cost.py build/release --top 5 --tolerance 40 --allow-cached || cost=$?
 fi
 begin_part "release: tests"
-ctest --preset release --parallel "$jobs" --no-tests=error --label-exclude sanitized | tee "$log"
+failed=0
+ctest --preset release --parallel "$jobs" --no-tests=error --label-exclude sanitized |
+  tee "$log" || failed=$?
+find_skips > "$skips"
+if ((failed != 0)); then exit "$failed"; fi
 
 if [[ $quick == no ]]; then
   begin_part "sanitizers: build"

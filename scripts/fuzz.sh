@@ -11,8 +11,8 @@ Builds the fuzz targets in build/fuzz and runs each of them for N seconds of CPU
 going on from the inputs of earlier runs (build/fuzz/corpus/TARGET, tests/corpus/TARGET).
   --seconds N  CPU time of each target
   --jobs J     targets at a time (default: 1); a target is one process
-  --keep       afterwards reduce the inputs to those that are needed for the coverage, and copy the
-               smallest of them to tests/corpus/TARGET, where the unit tests replay them
+  --keep       afterwards reduce the inputs to those that are needed for the coverage, and copy those
+               that add most to tests/corpus/TARGET, where the unit tests replay them
   --no-build   run what is built
   TARGET       default: all
 Prints a line a target and appends it to build/fuzz/history. Inputs that break a target are saved in
@@ -143,22 +143,26 @@ run_target() {
                     growth, files, found }'
 }
 
-# The inputs that are needed, and the smallest of them for the unit tests: together below 1 MB.
+# The inputs that are needed, and those of them for the unit tests that add most coverage: at most 120
+# and 32 kB, so that all targets together stay below 2 MB.
 keep_corpus() {
-  local target=$1 reduced=$scratch/reduced-$1 smallest=tests/corpus/$1 total=0 number=0 size file
-  mkdir --parents "$reduced" "$smallest"
-  local from=("$folder/corpus/$target" "$folder/seeds/$target" "$smallest")
-  fuzz "$target" -merge=1 "$reduced" "${from[@]}" >"$folder/logs/$target.merge" 2>&1
+  local target=$1 reduced=$scratch/reduced-$1 kept=tests/corpus/$1 log=$folder/logs/$1.merge
+  local total=0 number=0 size file
+  mkdir --parents "$reduced" "$kept"
+  # It takes the input that adds most coverage to those before, and writes them in that order.
+  fuzz "$target" -set_cover_merge=1 -verbosity=2 "$reduced" "$folder/corpus/$target" "$folder/seeds/$target" \
+    "$kept" >"$log" 2>&1
   rm --recursive --force "${folder:?}/corpus/$target"
   cp --recursive "$reduced" "$folder/corpus/$target"
   # Inputs that have once broken a target stay.
-  find "$smallest" -type f ! -name 'finding-*' -delete
-  while read -r size file; do
+  find "$kept" -type f ! -name 'finding-*' -delete
+  while read -r size file && ((number < 120)); do
+    if ((total + size > 32000)); then continue; fi
     total=$((total + size))
     number=$((number + 1))
-    if ((number > 80 || total > 24000)); then break; fi
-    cp "$reduced/$file" "$smallest/${file:0:16}"
-  done < <(find "$reduced" -type f -printf '%s %f\n' | sort --key=1,1n --key=2)
+    file=${file##*/}
+    cp "$reduced/$file" "$kept/${file:0:16}"
+  done < <(sed --quiet 's/^Written \([0-9]*\) bytes to /\1 /p' "$log")
 }
 
 tell_run() {

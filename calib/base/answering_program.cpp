@@ -27,6 +27,7 @@ using Outcome = ProgramConversation::Outcome;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* number_key = "question";
+constexpr const char* answer_place = "answer:";
 
 constexpr int most_failures = 3;
 
@@ -40,16 +41,37 @@ std::string fault(Outcome outcome, double limit_s, const ProgramConversation& pr
   return complaint.empty() ? what : what + " (" + complaint + ")";
 }
 
-bool says_ready(std::string_view answer) {
+}  // namespace
+
+bool says_ready(std::string_view line) {
   try {
-    const auto json = parse_json(answer, "answer");
+    const auto json = parse_json(line, "answer");
     return json.is_object() && json.contains("ready") && json["ready"] == true;
   } catch (const Error&) {  // no JSON
     return false;
   }
 }
 
-}  // namespace
+Json numbered_answer(std::string_view line, std::uint64_t asked) {
+  Json json = parse_json(line, "answer");
+  const JsonNode answer(json, answer_place);
+  if (!answer.has(number_key)) {
+    throw Error(
+        answer.place(),
+        fmt::format("does not repeat the number of its question, \"{}\": {}", number_key, asked),
+        "");
+  }
+  const Json number = answer.at(number_key).json();
+  if (number != asked) {
+    const bool earlier = number.is_number_unsigned() && number < asked;
+    throw Error(answer.place(),
+                fmt::format("is for question {} where {} was asked{}", in_quotes(number.dump()),
+                            asked, earlier ? ": more than one line for a question" : ""),
+                "");
+  }
+  json.erase(number_key);
+  return json;
+}
 
 AnsweringProgram::AnsweringProgram(std::vector<std::string> words,
                                    ProgramStart start,
@@ -74,29 +96,6 @@ void AnsweringProgram::start() {
   }
 }
 
-/// Throws Error if the line is not the answer to the last question.
-void AnsweringProgram::take_answer(std::string_view line,
-                                   const std::function<void(const JsonNode&)>& take) const {
-  Json json = parse_json(line, "answer");
-  const JsonNode answer(json, "answer:");
-  if (!answer.has(number_key)) {
-    throw Error(
-        answer.place(),
-        fmt::format("does not repeat the number of its question, \"{}\": {}", number_key, asked_),
-        "");
-  }
-  const Json number = answer.at(number_key).json();
-  if (number != asked_) {
-    const bool earlier = number.is_number_unsigned() && number < asked_;
-    throw Error(answer.place(),
-                fmt::format("is for question {} where {} was asked{}", in_quotes(number.dump()),
-                            asked_, earlier ? ": more than one line for a question" : ""),
-                "");
-  }
-  json.erase(number_key);
-  take(answer);
-}
-
 bool AnsweringProgram::ask(const std::function<Json()>& question,
                            const std::function<void(const JsonNode&)>& take) {
   if (failures_ >= most_failures) return false;
@@ -110,7 +109,8 @@ bool AnsweringProgram::ask(const std::function<Json()>& question,
   failure_ = fault(outcome, time_limit_s_, *program_);
   if (outcome == Outcome::line) {
     try {
-      take_answer(line, take);
+      const Json answer = numbered_answer(line, asked_);
+      take(JsonNode(answer, answer_place));
       failures_ = 0;
       return true;
     } catch (const Error& error) {

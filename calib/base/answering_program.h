@@ -15,6 +15,13 @@
 
 namespace vernier::internal {
 
+/// Whether a program's line says {"ready": true}, whatever it says besides.
+bool says_ready(std::string_view line);
+
+/// What a program's line answers to the question with this number, without the number. Throws Error
+/// if the line is no JSON, or not the answer to that question.
+nlohmann::ordered_json numbered_answer(std::string_view line, std::uint64_t asked);
+
 /// What such a program is told when it starts, and how long it may take.
 struct ProgramStart {
   std::function<std::string()> lines;  ///< that it answers with {"ready": true}
@@ -46,7 +53,6 @@ class AnsweringProgram {
 
  private:
   void start();
-  void take_answer(std::string_view line, const std::function<void(const JsonNode&)>& take) const;
 
   std::vector<std::string> words_;
   ProgramStart start_;

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -119,67 +117,6 @@ Json problem_json(const MrcalUncertaintyProblem& problem) {
   return json;
 }
 
-/// The script writes null for NaN.
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
-template <int N>
-Eigen::Matrix<double, N, N> square(const Json& json) {
-  Eigen::Matrix<double, N, N> M;
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) M(i, j) = number(json.at(i).at(j));
-  }
-  return M;
-}
-
-MrcalUncertaintyAnswer answer_of(const Json& json) {
-  MrcalUncertaintyAnswer answer;
-  answer.version = json.at("version").get<std::string>();
-  for (const Json& matrices : json.at("projection")) {
-    answer.projection.emplace_back();
-    for (const Json& matrix : matrices) answer.projection.back().push_back(square<2>(matrix));
-  }
-  for (const Json& query : json.at("triangulation")) {
-    MrcalTriangulationAnswer& to = answer.triangulation.emplace_back();
-    for (const Json& p : query.at("points")) {
-      to.points_m.emplace_back(number(p.at(0)), number(p.at(1)), number(p.at(2)));
-    }
-    for (const Json& matrix : query.at("calibration")) to.calibration.push_back(square<3>(matrix));
-    for (const Json& matrix : query.at("observation")) to.observation.push_back(square<3>(matrix));
-  }
-  return answer;
-}
-
-/// Whether every query has an answer of the right size.
-bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProblem& problem) {
-  bool all = answer.projection.size() == problem.projection.size() &&
-             answer.triangulation.size() == problem.triangulation.size();
-  for (std::size_t q = 0; all && q < answer.projection.size(); ++q) {
-    all = answer.projection[q].size() == problem.projection[q].points.size();
-  }
-  for (std::size_t q = 0; all && q < answer.triangulation.size(); ++q) {
-    const std::size_t pairs = problem.triangulation[q].pairs.size();
-    all = answer.triangulation[q].points_m.size() == pairs &&
-          answer.triangulation[q].calibration.size() == pairs &&
-          answer.triangulation[q].observation.size() == pairs;
-  }
-  return all;
-}
-
-MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertaintyProblem& problem) {
-  const Error broken("mrcal", "its Python script gave an unexpected answer", "leave mrcal out");
-  try {
-    MrcalUncertaintyAnswer answer = answer_of(parse_json(read_whole(reply), "mrcal's answer"));
-    if (complete(answer, problem)) return answer;
-  } catch (const Json::exception&) {
-    throw broken;
-  } catch (const Error&) {
-    throw broken;
-  }
-  throw broken;
-}
-
 /// Runs the script with the first Python that has mrcal. If none has, returns the output of the
 /// first one that could be run, with exit code no_mrcal; -1 if none can be run.
 ProgramRun run_script(const fs::path& script, std::vector<std::string> arguments) {
@@ -213,7 +150,7 @@ MrcalUncertaintyAnswer run_mrcal_uncertainty(const fs::path& script,
   if (run.exit_code != 0) {
     throw Error("mrcal", "its Python failed: " + run.last_output_line(), "leave mrcal out");
   }
-  return read_answer(reply, problem);
+  return parse_mrcal_answer(read_whole(reply), problem);
 }
 
 std::string mrcal_python_version(const fs::path& script) {

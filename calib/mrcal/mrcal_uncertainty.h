@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/board_observations.h"
@@ -60,6 +61,10 @@ struct MrcalUncertaintyProblem {
 /// mrcal cannot express the problem or fails.
 MrcalUncertaintyAnswer run_mrcal_uncertainty(const std::filesystem::path& script,
                                              const MrcalUncertaintyProblem& problem);
+
+/// Reads the script's answer. Throws Error if it is none, or not of the problem's queries.
+MrcalUncertaintyAnswer parse_mrcal_answer(std::string_view text,
+                                          const MrcalUncertaintyProblem& problem);
 
 /// The version of mrcal in an available Python; empty if none has it.
 std::string mrcal_python_version(const std::filesystem::path& script);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -23,6 +22,7 @@
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
 #include "sim/mesh_files/ifc_unit.h"
+#include "sim/mesh_files/mesh_bytes.h"
 #include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::sim::internal {
@@ -175,62 +175,6 @@ Mesh read_here(const std::filesystem::path& file,
   return mesh;
 }
 
-/// The numbers of a mesh as bytes of this machine, for the parent process.
-struct MeshHead {
-  std::uint64_t vertices, triangles, lines, parts_left_out, doors;
-  double unit_m;         // 0: not said
-  std::int64_t up_axis;  // -1: not said
-};
-
-template <class T>
-void put(std::string& bytes, const std::vector<T>& values) {
-  if (values.empty()) return;
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-template <class T>
-void take(const std::string& bytes, std::size_t& at, std::vector<T>& values) {
-  if (!values.empty()) {
-    std::memcpy(static_cast<void*>(values.data()), bytes.data() + at, values.size() * sizeof(T));
-  }
-  at += values.size() * sizeof(T);
-}
-
-std::string bytes_of(const Mesh& mesh) {
-  const MeshHead head{
-      mesh.vertices.size(), mesh.triangles.size(),   mesh.lines.size(),        mesh.parts_left_out,
-      mesh.doors,           mesh.unit_m.value_or(0), mesh.up_axis.value_or(-1)};
-  std::string bytes(reinterpret_cast<const char*>(&head), sizeof head);
-  put(bytes, mesh.vertices);
-  put(bytes, mesh.triangles);
-  put(bytes, mesh.lines);
-  return bytes;
-}
-
-Mesh mesh_of(const std::string& bytes, const std::string& place) {
-  MeshHead head{};
-  if (bytes.size() >= sizeof head) std::memcpy(&head, bytes.data(), sizeof head);
-  Mesh mesh;
-  mesh.vertices.resize(head.vertices);
-  mesh.triangles.resize(head.triangles);
-  mesh.lines.resize(head.lines);
-  std::size_t at = sizeof head;
-  const std::size_t whole = at + head.vertices * sizeof mesh.vertices[0] +
-                            head.triangles * sizeof mesh.triangles[0] +
-                            head.lines * sizeof mesh.lines[0];
-  if (bytes.size() != whole) {
-    throw Error(place, "was not read to its end", "run it again where there is more memory");
-  }
-  take(bytes, at, mesh.vertices);
-  take(bytes, at, mesh.triangles);
-  take(bytes, at, mesh.lines);
-  mesh.parts_left_out = head.parts_left_out;
-  mesh.doors = head.doors;
-  if (head.unit_m > 0) mesh.unit_m = head.unit_m;
-  if (head.up_axis >= 0) mesh.up_axis = static_cast<int>(head.up_axis);
-  return mesh;
-}
-
 }  // namespace
 
 Mesh read_with_assimp(const std::filesystem::path& file,
@@ -245,9 +189,9 @@ Mesh read_with_assimp(const std::filesystem::path& file,
   std::error_code fault;
   const auto size = static_cast<double>(std::filesystem::file_size(file, fault));
   const std::string bytes =
-      in_child_process([&] { return bytes_of(read_here(file, ending, leave_out)); },
+      in_child_process([&] { return mesh_bytes(read_here(file, ending, leave_out)); },
                        least_s + (fault ? 0 : s_per_byte * size), file.string());
-  Mesh mesh = mesh_of(bytes, file.string());
+  Mesh mesh = mesh_of_bytes(bytes, file.string());
   if (is_turned(ending)) mesh.up_because = "as its reader turns it";
   double largest = 0;  // assimp computes in floats
   for (const Eigen::Vector3d& v : mesh.vertices)

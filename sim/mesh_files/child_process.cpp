@@ -78,12 +78,9 @@ std::string read_all(int from) {
   }
 }
 
-[[noreturn]] void rethrow(const std::string& answer, const std::string& place) {
-  const std::size_t first = answer.find(between_parts),
-                    second = answer.find(between_parts, first + 1);
-  const std::string where = answer.substr(1, first - 1);
-  throw Error(where.empty() ? place : where, answer.substr(first + 1, second - first - 1),
-              answer.substr(second + 1));
+[[noreturn]] void fail_damaged_file(const std::string& place) {
+  throw Error(place, "is damaged, or of a kind on which its reader fails",
+              "check the file, or convert it to another format");
 }
 
 }  // namespace
@@ -119,13 +116,17 @@ std::string in_child_process(const std::function<std::string()>& work,
     throw Error(place, fmt::format("was not read within {:g} s of CPU time", cpu_limit_s),
                 "check the file, or convert it to another format");
   }
-  const bool is_whole = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !answer.empty();
-  if (!is_whole) {
-    throw Error(place, "is damaged, or of a kind on which its reader fails",
-                "check the file, or convert it to another format");
-  }
-  if (answer[0] == refused) rethrow(answer, place);
-  return answer.substr(1);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_damaged_file(place);
+  return child_result(answer, place);
+}
+
+std::string child_result(const std::string& told, const std::string& place) {
+  if (told.starts_with(good)) return told.substr(1);
+  const std::size_t first = told.find(between_parts), second = told.rfind(between_parts);
+  if (!told.starts_with(refused) || second < first + 2) fail_damaged_file(place);  // no fault
+  const std::string where = told.substr(1, first - 1);
+  throw Error(where.empty() ? place : where, told.substr(first + 1, second - first - 1),
+              told.substr(second + 1));
 }
 
 }  // namespace vernier::sim::internal

@@ -14,4 +14,8 @@ std::string in_child_process(const std::function<std::string()>& work,
                              double cpu_limit_s,
                              const std::string& place);
 
+/// What the child tells its parent: the bytes of `work`, or the Error that it threw, which is
+/// thrown again. An Error too for bytes that it does not write.
+std::string child_result(const std::string& told, const std::string& place);
+
 }  // namespace vernier::sim::internal

@@ -23,6 +23,7 @@
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
 #include "sim/mesh_files/ifc_unit.h"
+#include "sim/mesh_files/mesh_bytes.h"
 #include "sim/world.h"
 #include "sim/world/world_export.h"
 #include "tests/support/error_message.h"
@@ -185,6 +186,55 @@ TEST(ChildProcess, KeepsCrashesToItself) {
             }),
             "a.ifc: was not read within 1 s of CPU time; check the file, or convert it to another "
             "format");
+}
+
+// What a child tells is checked: a library may have damaged the memory that it is told from.
+TEST(ChildProcess, TellsBytesOrAnError) {
+  const auto said = [](const std::string& told) {
+    return error_message([&] { child_result(told, "a.ifc"); });
+  };
+  const std::string damaged =
+      "a.ifc: is damaged, or of a kind on which its reader fails; check the file, or convert it to "
+      "another format";
+  const std::string none(1, '\0');
+  EXPECT_EQ(child_result("Gbytes", "a.ifc"), "bytes");
+  EXPECT_EQ(said("R" + none + "is wrong" + none + "mend it"), "a.ifc: is wrong; mend it");
+  EXPECT_EQ(said(""), damaged);
+  EXPECT_EQ(said("R"), damaged);
+  EXPECT_EQ(said("Rplace" + none + "is wrong"), damaged);
+  EXPECT_EQ(said("R" + none + none), damaged);
+  EXPECT_EQ(said("Xbytes"), damaged);
+}
+
+TEST(MeshBytes, ComeBackOrAreRefused) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 0, 2.5}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.lines = {{0, 2}};
+  mesh.up_axis = 1;
+  mesh.unit_m = 0.001;
+  mesh.parts_left_out = 3;
+  const std::string bytes = mesh_bytes(mesh);
+  const Mesh again = mesh_of_bytes(bytes, "a.ifc");
+  EXPECT_EQ(again.vertices, mesh.vertices);
+  EXPECT_EQ(again.triangles, mesh.triangles);
+  EXPECT_EQ(again.lines, mesh.lines);
+  EXPECT_EQ(again.up_axis, 1);
+  EXPECT_EQ(again.unit_m, 0.001);
+  EXPECT_EQ(again.parts_left_out, 3u);
+
+  const auto said = [](const std::string& told) {
+    return error_message([&] { mesh_of_bytes(told, "a.ifc"); });
+  };
+  const std::string cut = "a.ifc: was not read to its end; run it again where there is more memory";
+  EXPECT_EQ(said(""), cut);
+  EXPECT_EQ(said(bytes.substr(1)), cut);
+  EXPECT_EQ(said(std::string(40, '\xff') + bytes.substr(40)), cut);  // counts that no file has
+  mesh.lines = {{0, 3}};
+  EXPECT_NE(said(mesh_bytes(mesh)).find("is damaged"), std::string::npos);
+  mesh.lines.clear();
+  mesh.up_axis = 3;
+  EXPECT_NE(said(mesh_bytes(mesh)).find("is damaged"), std::string::npos);
 }
 
 // Property: a world that is exported and imported again has the same edges, but for those shorter

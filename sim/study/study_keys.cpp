@@ -22,6 +22,8 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
+#include "calib/base/json_node.h"
+#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/error.h"
 #include "calib/interval.h"
@@ -289,23 +291,22 @@ std::optional<CalibrationRecord> noted_calibrations(const StoreNotes& notes,
   const auto note = notes.find(calibration);
   if (note == notes.end()) return std::nullopt;
   try {
-    const auto json = nlohmann::json::parse(note->second);
+    const nlohmann::ordered_json json = parse_json(note->second, "note");
+    const JsonNode of(json, "note:");
     const auto number = [&](const char* key) {
-      const auto& value = json.at(key);
-      return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+      return of.at(key).json().is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                         : of.at(key).number();
     };
-    return CalibrationRecord{json.at("calibrations").get<int>(),
-                             json.at("failed").get<int>(),
-                             json.at("doubtful").get<int>(),
-                             json.at("why_failed").get<std::string>(),
-                             json.at("why_doubtful").get<std::string>(),
-                             number("range_m"),
-                             number("depth_error_m"),
-                             number("depth_sd_m")};
-  } catch (const nlohmann::json::exception&) {
-    throw Error("store", "its note of calibrations is damaged",
-                "delete the stores of the folder and run the study again");
+    const CalibrationRecord record{of.at("calibrations").integer(), of.at("failed").integer(),
+                                   of.at("doubtful").integer(),     of.at("why_failed").text(),
+                                   of.at("why_doubtful").text(),    number("range_m"),
+                                   number("depth_error_m"),         number("depth_sd_m")};
+    const auto counts_some = [&](int count) { return count >= 0 && count <= record.calibrations; };
+    if (counts_some(record.failed) && counts_some(record.doubtful)) return record;
+  } catch (const Error&) {  // said below
   }
+  throw Error("store", "its note of calibrations is damaged",
+              "delete the stores of the folder and run the study again");
 }
 
 int ceiling_queries(const Study& study, const std::string& ceiling) {

@@ -19,6 +19,8 @@
 #include "sim/experiment.h"
 #include "sim/study/store_lock.h"
 #include "sim/study/store_rows.h"
+#include "sim/study/study_keys.h"
+#include "sim/told/fresh_calibrations.h"
 #include "tests/sim/study/stored_example.h"
 
 namespace vernier {
@@ -255,6 +257,25 @@ TEST_F(Store, AChangeCutShortIsUndoneByTheNextWriter) {
   EXPECT_EQ(files(), before);
   EXPECT_EQ(StudyStore(cut, Journal::roll_back).content().blocks.size(), 20u);
   EXPECT_EQ(read_store(cut).blocks.size(), 20u);
+}
+
+TEST_F(Store, ANoteOfCalibrationsComesBackOrIsDamaged) {
+  const CalibrationRecord record{100, 2, 1, "too few views", "bent board", 5, 0.02, std::nan("")};
+  const StoreNotes::value_type note = calibration_note("calibration", record);
+  const auto read = [&](const std::string& text) {
+    return noted_calibrations({{note.first, text}}, note.first).value();
+  };
+  const CalibrationRecord again = read(note.second);
+  EXPECT_EQ(again.calibrations, 100);
+  EXPECT_EQ(again.failed, 2);
+  EXPECT_EQ(again.why_doubtful, "bent board");
+  EXPECT_EQ(again.depth_error_m, 0.02);
+  EXPECT_TRUE(std::isnan(again.depth_sd_m));
+  for (const char* failed : {"-1", "101", "2.5", "4294967298", "true", "null"}) {
+    std::string damaged = note.second;
+    damaged.replace(damaged.find("\"failed\":2"), 10, std::string("\"failed\":") + failed);
+    EXPECT_NE(refusal([&] { read(damaged); }).find("is damaged"), std::string::npos) << failed;
+  }
 }
 
 TEST_F(Store, OfVersion1IsReadAndGivenChecksums) {

@@ -8,7 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
@@ -302,6 +304,12 @@ std::string rows_svg(const PaperFigure& figure) {
   return document(width, top + 12, body);
 }
 
+/// Whether these are the bytes of a PDF file from its head to its last line.
+bool is_whole_pdf(std::string_view bytes) {
+  const std::size_t last = bytes.find_last_not_of("\r\n");
+  return bytes.starts_with("%PDF-") && bytes.substr(0, last + 1).ends_with("%%EOF");
+}
+
 }  // namespace
 
 std::string figure_svg(const PaperFigure& figure) {
@@ -342,7 +350,11 @@ std::optional<std::string> svg_as_pdf(const std::string& svg) {
   if (run.exit_code != 0) {
     throw Error("rsvg-convert", "failed: " + run.last_output_line(), "leave out --figures");
   }
-  return read_whole(to);
+  std::string pdf = std::filesystem::exists(to) ? read_whole(to) : "";
+  if (!is_whole_pdf(pdf)) {
+    throw Error("rsvg-convert", "gave no whole PDF file", "leave out --figures");
+  }
+  return pdf;
 }
 
 }  // namespace vernier::cli

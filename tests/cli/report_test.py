@@ -116,6 +116,27 @@ class Report(unittest.TestCase):
         self.works('report', 'one', '--no-proof', '-o', 'report.html')
         self.assertNotIn('worlds', self.data())
 
+    def check_pdf_programs(self):
+        """rsvg-convert's exit code alone does not say that there is a PDF file."""
+        (self.folder / 'bin').mkdir()
+        fake = self.folder / 'bin' / 'rsvg-convert'
+        environment = dict(os.environ, PATH=f'{fake.parent}:{os.environ["PATH"]}')
+        whole = b'%PDF-1.5\n1 0 obj\n%%EOF\n'
+        for given, is_whole in ((whole, True), (None, False), (b'', False), (whole[:-3], False),
+                                (b'<svg/>\n%%EOF\n', False)):
+            (self.folder / 'given').write_bytes(given or b'')
+            copy = f'cp "{self.folder / "given"}" "${{2#--output=}}"'
+            fake.write_text(f'#!/bin/sh\n{":" if given is None else copy}\n')
+            fake.chmod(0o755)
+            done = subprocess.run(
+                [PROGRAM, 'report', 'grid', '--no-proof', '-o', 'fake.html', '--figures', 'faked'],
+                capture_output=True, text=True, cwd=self.folder, env=environment)
+            self.assertEqual(done.returncode, 0 if is_whole else 2, done.stderr)
+            if not is_whole:
+                self.assertIn('rsvg-convert: gave no whole PDF file; leave out --figures', done.stderr)
+                continue
+            self.assertEqual((self.folder / 'faked' / 'success.pdf').read_bytes(), whole)
+
     def test_figures_for_papers(self):
         (self.folder / 'grid.toml').write_text(STUDY + '''[sweep]
 "sources.calibration" = [0.1, 10]
@@ -142,6 +163,7 @@ class Report(unittest.TestCase):
             for method in ('lines', 'pgh_baseline_vectorised'):
                 self.assertIn(f'method = {method}', texts)  # a panel each
             self.assertNotIn(b'nan', content)
+        self.check_pdf_programs()
         done = subprocess.run([PROGRAM, 'report', 'nominal', '--figures', 'none', '-o', 'x.html'],
                               capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(done.returncode, 2)

@@ -1,11 +1,14 @@
 # The sources of all fuzz targets and what they need, from the root of the project.
 set(vernier_fuzz_targets
+  calib/mrcal/mrcal_answer.cpp
   cli/localisation/place_poses.cpp
   cli/report/report_evaluation.cpp
   cli/robot/drive_commands.cpp
   fuzz/example_rigs.cpp
+  fuzz/example_stores.cpp
   fuzz/fuzz_target.cpp
   fuzz/same_values.cpp
+  fuzz/targets/answer_line.cpp
   fuzz/targets/asl_sensor.cpp
   fuzz/targets/camera_path.cpp
   fuzz/targets/camera_poses.cpp
@@ -24,6 +27,7 @@ set(vernier_fuzz_targets
   fuzz/targets/map_file.cpp
   fuzz/targets/matcher_command.cpp
   fuzz/targets/mesh_file.cpp
+  fuzz/targets/mrcal_answer.cpp
   fuzz/targets/mrcal_cameramodel.cpp
   fuzz/targets/numpy.cpp
   fuzz/targets/observations_csv.cpp
@@ -37,7 +41,9 @@ set(vernier_fuzz_targets
   fuzz/targets/segments_file.cpp
   fuzz/targets/source_answer.cpp
   fuzz/targets/stereo_scenes.cpp
+  fuzz/targets/study_notes.cpp
   fuzz/targets/study_store.cpp
+  fuzz/targets/study_store_log.cpp
   fuzz/targets/study_toml.cpp
   fuzz/targets/system_answer.cpp
   fuzz/targets/text_numbers.cpp

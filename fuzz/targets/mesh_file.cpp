@@ -9,6 +9,8 @@
 #include "fuzz/fuzz_target.h"
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
+#include "sim/mesh_files/child_process.h"
+#include "sim/mesh_files/mesh_bytes.h"
 #include "sim/world.h"
 #include "sim/world/world_export.h"
 
@@ -40,6 +42,20 @@ void run_line_tracks(std::string_view bytes) {
   if (const auto mesh = accepted([&] { return read_line_tracks(file, 1); })) import(*mesh);
 }
 
+/// What a child process with a reader in it tells of a mesh: any bytes, if the reader has damaged
+/// its memory.
+void run_child_mesh(std::string_view bytes) {
+  const std::string told(bytes);
+  const auto result = accepted([&] { return child_result(told, "mesh"); });
+  if (!result) return;
+  const auto mesh = accepted([&] { return mesh_of_bytes(*result, "mesh"); });
+  if (!mesh) return;
+  const std::string written = mesh_bytes(*mesh);
+  require(mesh_bytes(mesh_of_bytes(written, "written")) == written,
+          "what is written is read as the same");
+  import(*mesh);
+}
+
 /// A room with a step in its floor.
 World room() {
   World world;
@@ -66,6 +82,18 @@ std::vector<std::string> ply_seeds() {
               std::string(14, '\1')};
 }
 
+std::vector<std::string> child_mesh_seeds() {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 0, 2.5}, {0, 3, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
+  mesh.lines = {{0, 3}};
+  mesh.up_axis = 2;
+  mesh.unit_m = 0.001;
+  mesh.doors = 1;
+  return {"G" + mesh_bytes(mesh), "G" + mesh_bytes({}),
+          "R" + std::string("file.ifc:7\0is wrong\0mend it", 27)};
+}
+
 std::vector<std::string> line_list_seeds() {
   return {
       "# a room\n0 0 0 6 0 0\n6 0 0 6 4 0\n6 4 0 0 4 0\n0 4 0 0 0 0\n0 0 0 0 0 2.5\n"
@@ -78,6 +106,7 @@ std::vector<std::string> line_tracks_seeds() {
       "0 0 2.5\n1 2 \n3 1 \n"};
 }
 
+const Registered child_mesh({"child_mesh", 400, "", run_child_mesh, child_mesh_seeds});
 const Registered ply({"ply", 4000, "ply", run_ply, ply_seeds});
 const Registered line_list({"line_list", 2000, "columns", run_line_list, line_list_seeds});
 const Registered line_tracks({"line_tracks", 2000, "columns", run_line_tracks, line_tracks_seeds});

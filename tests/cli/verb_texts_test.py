@@ -20,7 +20,7 @@ import verb_calls
 from text_faults import NOMINAL, ROOT, json_faults, toml_faults, yaml_faults
 
 SHIPPED = {'nominal': 'named.json', 'workshop': 'named.world.toml'}  # in whose place a file is given
-NO_TEXT = {'.pgm', '.png', '.jpg', '.map'}  # maps: text_limits_test.py
+NO_TEXT = {'.pgm', '.png', '.jpg', '.map', '.sqlite', '.npy', '.pfm', '.html'}  # maps: text_limits_test.py
 WITHOUT_TEXT = {'doctor', 'world', 'map_info'}  # calls of verb_calls.py that read none
 NAMES_OTHERS = {'study': ['posts.world.toml'], 'tune': ['posts.world.toml', 'yard.world.toml']}
 
@@ -128,7 +128,7 @@ class VerbTexts(text_faults.TextCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        verb_calls.write_inputs(cls.folder)
+        verb_calls.write_inputs(cls.folder, text_faults.PROGRAM)
         (cls.folder / 'named.json').write_text(NOMINAL)
         shutil.copy(ROOT / 'datasets/worlds/workshop.world.toml', cls.folder / 'named.world.toml')
         for name, text in FURTHER_FILES.items():

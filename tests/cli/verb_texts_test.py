@@ -112,7 +112,7 @@ def faults(name, good):
                  of(json_faults(first), 'deep inside', 'doubled key', 'number 1e309')]
     elif ending == '.toml':
         found = of(toml_faults(good), 'deep list', 'doubled key', 'number 1e309')
-    elif ending == '.yaml':
+    elif ending in ('.yaml', '.yml'):
         found = of(yaml_faults(good), 'deep flow', 'doubled key') + [
             ('number 1e309', with_number(good, '1e309'))]
     elif ending in ('.csv', '.txt', '.vnl'):

@@ -101,7 +101,8 @@ class MappedFile {
   explicit MappedFile(const std::filesystem::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0) {
-      throw Error(file.string(), std::string("cannot be read: ") + std::strerror(errno),
+      throw Error(file.string(),
+                  std::string("is no file that can be read: ") + std::strerror(errno),
                   "check its name and permissions");
     }
     struct stat status {};

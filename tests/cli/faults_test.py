@@ -326,26 +326,6 @@ class Writers(FaultCase):
         self.assertIn(hashlib.sha256((self.folder / 'out.csv').read_bytes()).digest(), whole)
         self.assertEqual(self.made(), {'out.csv'})
 
-    def test_several_that_extend_one_map_each_add_their_own(self):
-        """Views at other places each, so that they can be told apart."""
-        views = [json.loads(line) for line in verb_calls.features().splitlines()]
-        shutil.copy(self.folder / 'known.map', self.folder / 'grown.map')
-        running = []
-        for number in range(1, 7):
-            with open(self.folder / f'{number}.jsonl', 'w') as file:
-                for view in views:
-                    file.write(json.dumps({**view, 'pose': [view['pose'][0], 100 * number, 0]}) + '\n')
-            running.append(subprocess.Popen(
-                [cli_test.PROGRAM, 'map', 'make', '--features', f'{number}.jsonl', '--rig', 'nominal',
-                 '--extend', 'grown.map', '-q'], cwd=self.folder, stdout=subprocess.DEVNULL))
-        self.assertEqual([process.wait() for process in running], [0] * 6)
-        said = self.run_in_folder('map', 'info', 'grown.map', '--json')
-        self.assertEqual(said.returncode, 0, said.stderr)
-        info = json.loads(said.stdout)
-        self.assertEqual((info['nodes'], info['positions']), (35, 35))
-        self.assertEqual((info['low_m'], info['high_m']), ([0, 0], [4, 600]))
-        self.assertFalse(list(self.folder.glob('.vernier-*')))
-
     def test_several_writers_of_one_folder(self):
         running = [subprocess.Popen([cli_test.PROGRAM, 'uncertainty', 'rig.json', '--distances-m',
                                      '1,inf', '--grid', '6x4', '-o', 'out', '-q'], cwd=self.folder,

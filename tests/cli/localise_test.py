@@ -8,6 +8,7 @@ import json
 import math
 import pathlib
 import random
+import subprocess
 import sys
 import unittest
 
@@ -121,6 +122,22 @@ class Localise(verb_calls.ProgramCase):
         head = 16
         self.assertEqual(bytes_of('a.map')[head:len(bytes_of('again.map'))],
                          bytes_of('again.map')[head:])
+
+    def test_several_that_extend_one_map_each_add_their_own(self):
+        """Views at other places each, so that they can be told apart."""
+        views = [json.loads(line) for line in verb_calls.features().splitlines()]
+        running = []
+        for number in range(1, 7):
+            write(self.folder / f'{number}.jsonl',
+                  [{**view, 'pose': [view['pose'][0], 100 * number, 0]} for view in views])
+            running.append(subprocess.Popen(
+                [self.program, 'map', 'make', '--features', f'{number}.jsonl', '--rig', 'nominal',
+                 '--extend', 'known.map', '-q'], cwd=self.folder, stdout=subprocess.DEVNULL))
+        self.assertEqual([process.wait() for process in running], [0] * 6)
+        info = json.loads(self.done('map', 'info', 'known.map', '--json'))
+        self.assertEqual((info['nodes'], info['positions']), (35, 35))
+        self.assertEqual((info['low_m'], info['high_m']), ([0, 0], [4, 600]))
+        self.assertFalse(list(self.folder.glob('.vernier-*')))
 
     def test_features_of_a_file(self):
         self.map_of_rooms()

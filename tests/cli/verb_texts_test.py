@@ -31,7 +31,7 @@ TRACKS = '1\n0 3 3\n0.5 1.5 2.5\n0.5 1.5 4.5\n0 1 2\n7 8 9\n'
 OWN_STUDY = ('[study]\ntrials = 2\n[world]\nfile = "posts.world.toml"\n[rig]\nfile = "rig.json"\n'
              '[sources]\nfile = "sources.toml"\n')
 FURTHER_FILES = {
-    'sources.toml': SOURCES, 'scenes.toml': SCENES, 'target.yaml': TARGET, 'own.toml': OWN_STUDY,
+    'sources.toml': SOURCES, 'scenes.toml': SCENES, 'target.yaml': TARGET, 'own_rig.toml': OWN_STUDY,
     'places.csv': 'image,x_m,y_m,heading_deg\nleft.pgm,1.5,2,3\n',
     'path.txt': '0 0 0 0 0 0 0 1\n1 1.5 0 0 0 0 0 1\n',
     'corners.vnl': '# filename x y level\nleft1.jpg 10.5 20.5 0\n',
@@ -53,7 +53,7 @@ def further_calls():
                        'rig.json', '-o', 'out.json']),
         ('check', ['check', 'rig.json']),
         ('combine', ['combine', 'rig.json', 'nominal', '-o', 'out.json']),
-        ('plan', ['plan', '--success', '0.9', '--study', 'own.toml']),
+        ('plan', ['plan', '--success', '0.9', '--study', 'own_rig.toml']),
         ('plan', ['plan', 'nominal', '--success', '0.9', '--world', 'posts.world.toml']),
         ('evaluate', ['evaluate', '--scenes', 'scenes.toml']),
         ('evaluate', ['evaluate', *pair, '--truth', 'truth.pgm', '--truth-scale', '4',
@@ -82,7 +82,7 @@ def further_calls():
         ('report', ['report', 'scores', '-o', 'out.html']),
         ('report', ['report', 'begun', '--calibration', 'rig.json', '-o', 'out.html'])]
     return [(name, words, []) for name, words in calls] + [
-        ('study', ['study', 'own.toml', '-o', 'out'], ['rig.json', 'sources.toml'])]
+        ('study', ['study', 'own_rig.toml', '-o', 'out'], ['rig.json', 'sources.toml'])]
 
 
 def with_number(text, word):
@@ -145,7 +145,8 @@ class VerbTexts(text_faults.TextCase):
             at = self.folder / word
             if os.path.isabs(word) or not at.exists():
                 continue
-            inside = [word] if at.is_file() else [f'{word}/{file.name}' for file in sorted(at.iterdir())]
+            inside = [word] if at.is_file() else [f'{word}/{file.name}' for file in sorted(at.iterdir())
+                                                          if file.is_file()]
             texts += [name for name in inside if pathlib.Path(name).suffix not in NO_TEXT]
         return list(dict.fromkeys(texts))
 

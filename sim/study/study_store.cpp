@@ -70,7 +70,8 @@ void check_regular(const fs::path& file) {
   }
 }
 
-/// Whether the file's head says that changes go to a log beside it (WAL).
+/// Whether the file's head says that changes go to a log beside it (WAL). SQLite goes by the second
+/// of its two bytes about this.
 bool has_write_ahead_head(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) {
@@ -78,7 +79,7 @@ bool has_write_ahead_head(const fs::path& file) {
   }
   std::array<char, 20> head{};
   in.read(head.data(), head.size());
-  return in && head[18] == 2 && head[19] == 2;
+  return in && head.back() == 2;
 }
 
 /// SQLite's options for reading a store that has a log without making or changing a file: a log

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/base/unfinished_work.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
@@ -38,6 +40,7 @@ void remove_with_content(const std::string& folder) noexcept {
   try {
     std::error_code ignored;
     for (int i = 0; i < tries && std::filesystem::exists(folder, ignored); ++i) {
+      if (i > 0) ::usleep(1000);
       std::filesystem::remove_all(folder, ignored);
     }
   } catch (const std::bad_alloc&) {  // what is left is in a temporary folder

@@ -33,9 +33,9 @@ struct Explained {
 };
 
 Explained explained(const Eigen::MatrixXd& A, const Eigen::VectorXd& g) {
-  const Eigen::VectorXd diagonal = A.diagonal();
-  if (!(diagonal.minCoeff() > 0)) return {};
-  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
+  // a parameter without influence, such as the baseline's length of a rectified pair, has no part
+  const Eigen::VectorXd scale =
+      A.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
   const SymmetricEigen eigen(scale.asDiagonal() * A * scale.asDiagonal());
   Explained result;
   const Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * g);

@@ -221,7 +221,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   }
   std::optional<PairChange> change;
   if (inliers.size() > 0) change = change_finding(inliers, joint.state.rig);
-  warn(result, evidence.pairs.size(), change, options, *estimate.calibration);
+  warn(result, evidence, change, options, *estimate.calibration);
   estimate.evidence = merged_evidence(joint.boards, joint.state);
   estimate.evidence->pairs = evidence.pairs;
   estimate.evidence->priors = evidence.priors;

@@ -3,6 +3,7 @@
 #include "calib/calibration/joint_summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -63,6 +64,20 @@ std::pair<double, int> of_held(const GaussianRigPrior& prior, const JointMinimum
   return {z.squaredNorm(), static_cast<int>(held.size())};
 }
 
+/// Numbers of image pairs whose matches are outliers for the most part.
+std::vector<int> lost_image_pairs(const PairObservations& pairs,
+                                  const std::vector<PairOutlier>& outliers) {
+  constexpr std::size_t fewest_matches = 12;
+  std::vector<int> lost;
+  for (const ImagePair& image : pairs.image_pairs) {
+    const auto out = static_cast<std::size_t>(
+        std::count_if(outliers.begin(), outliers.end(),
+                      [&](const PairOutlier& o) { return o.image_pair == image.number; }));
+    if (image.count >= fewest_matches && 2 * out > image.count) lost.push_back(image.number);
+  }
+  return lost;
+}
+
 }  // namespace
 
 CalibrationSummary summary_of(const JointMinimum& joint,
@@ -104,15 +119,21 @@ CalibrationSummary summary_of(const JointMinimum& joint,
 }
 
 void warn(const JointCalibration& joint,
-          std::size_t pairs,
+          const JointEvidence& evidence,
           const std::optional<PairChange>& change,
           const JointOptions& options,
           CalibrationSummary& summary) {
-  if (change) {
-    (change->is_doubtful() ? summary.trust_warnings : summary.warnings).push_back(change->text);
-  }
-  const std::size_t out = summary.pair_outliers.size();
-  if (3 * out > pairs && !change) {
+  // white noise leaves nothing to the scatter of image pairs, and so no change to the covariance
+  const bool doubts_change = change && (change->is_doubtful() || options.white_noise);
+  if (change) (doubts_change ? summary.trust_warnings : summary.warnings).push_back(change->text);
+  const std::vector<int> lost = lost_image_pairs(evidence.pairs, summary.pair_outliers);
+  const std::size_t pairs = evidence.pairs.size(), out = summary.pair_outliers.size();
+  if (!lost.empty() && !doubts_change) {
+    summary.trust_warnings.push_back(fmt::format(
+        "most matches of image pair{} {} were left out as outliers: the rig was another there, or "
+        "the matches are poor; look at these images, or leave them out",
+        lost.size() > 1 ? "s" : "", fmt::join(lost, ", ")));
+  } else if (3 * out > pairs && !doubts_change) {
     summary.trust_warnings.push_back(
         fmt::format("{} of {} pairs were left out as outliers: the matches are poor, or the rig "
                     "changed between image pairs",
@@ -127,8 +148,11 @@ void warn(const JointCalibration& joint,
                     pairs, joint.observability->from_data));
   }
   const double scale = joint.pair_sigma_scale;
-  const bool is_estimated = options.pair_sigma_scale == 0 && pairs > 0 && !change;
-  if (is_estimated && scale > 2) {
+  const bool is_estimated = options.pair_sigma_scale == 0 && pairs > 0;
+  if (is_estimated && scale > 2 && doubts_change) {
+    summary.warnings.push_back(fmt::format(
+        "the noise was estimated from the residuals, at {:.2g} times what is stated", scale));
+  } else if (is_estimated && scale > 2) {
     constexpr double incredible = 5;
     (scale > incredible ? summary.trust_warnings : summary.warnings)
         .push_back(fmt::format("the residuals of the pairs are {:.2g} times their stated noise: "

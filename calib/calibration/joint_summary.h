@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <optional>
 
 #include "calib/calibration/change_findings.h"
@@ -23,11 +22,11 @@ CalibrationSummary summary_of(const JointMinimum& joint,
                               const ReducedNormalEquations& plain,
                               const Eigen::MatrixXd& bound);
 
-/// Adds warnings about the result. A change between image pairs
+/// Adds warnings about the result. A doubtful change between image pairs
 /// (calib/calibration/change_findings.h) stands for what follows from it: large residuals, and many
 /// outliers.
 void warn(const JointCalibration& joint,
-          std::size_t pairs,
+          const JointEvidence& evidence,
           const std::optional<PairChange>& change,
           const JointOptions& options,
           CalibrationSummary& summary);

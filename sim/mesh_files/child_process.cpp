@@ -123,7 +123,8 @@ std::string in_child_process(const std::function<std::string()>& work,
 std::string child_result(const std::string& told, const std::string& place) {
   if (told.starts_with(good)) return told.substr(1);
   const std::size_t first = told.find(between_parts), second = told.rfind(between_parts);
-  if (!told.starts_with(refused) || second < first + 2) fail_damaged_file(place);  // no fault
+  const bool has_parts = told.starts_with(refused) && first != std::string::npos;
+  if (!has_parts || second < first + 2) fail_damaged_file(place);  // no fault
   const std::string where = told.substr(1, first - 1);
   throw Error(where.empty() ? place : where, told.substr(first + 1, second - first - 1),
               told.substr(second + 1));

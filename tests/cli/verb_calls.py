@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
 """Quick calls of every verb in its important modes, for tests that disturb the program (streams_test.py,
-faults_test.py, permissions_test.py, size_limits_test.py and scripts/fault_trials.py), and a test case
+faults_test.py, permissions_test.py, memory_limits_test.py, full_disk_test.py,
+signals_test.py, verb_texts_test.py and scripts/fault_trials.py), and a test case
 that calls it in a folder with their inputs."""
 import dataclasses
 import functools

@@ -51,7 +51,7 @@ ExperimentSettings with_every_source() {
   return s;
 }
 
-/// A localiser that never is sure enough takes every look, at the turns it asks for.
+/// One of the six takes them all, at the turns that the localiser asks for.
 ExperimentSettings with_three_looks() {
   ExperimentSettings s = settings("lines");
   s.looks = 3;
@@ -88,7 +88,11 @@ TEST(ResultsVersion, TrialsGiveWhatTheyGaveWhenItWasSet) {
        {1.311473, 3.818018, -1.590605, -29.243269, 7.156373, 2.179267, -2.318301, -70.269547,
         1.466711, 4.650121, -1.651536, -81.226044, 2.189891, 8.294113, 1.739407,  -7.490816,
         7.146597, 8.014146, 2.429865,  -56.415936, 6.611635, 4.711433, 0.218672,  -49.948090}},
-      {"lines, three looks", with_three_looks(), {}},
+      {"lines, three looks",
+       with_three_looks(),
+       {1.311473, 3.818018, -1.590605, -29.243269, 7.156373, 2.179267, -2.318301, -70.269547,
+        1.466711, 4.650121, -1.651536, -81.226044, 2.184199, 8.294566, 1.737366,  -80.274668,
+        7.146597, 8.014146, 2.429865,  -56.415936, 6.611635, 4.711433, 0.218672,  -49.948090}},
       {"corners",
        settings("corners"),
        {1.308940,  3.813340, -1.585875, 56.549558, 7.148722,  2.176175,  -2.320661,

@@ -153,6 +153,8 @@ class VerbTexts(text_faults.TextCase):
         return list(dict.fromkeys(texts))
 
     def all_calls(self):
+        for call in verb_calls.calls():
+            call.prepare(self.folder)
         calls = [(call.name, call.words, NAMES_OTHERS.get(call.name, [])) for call in verb_calls.calls()]
         for name, words, others in calls + further_calls():
             words = [SHIPPED.get(str(word), str(word)) for word in words]

@@ -144,7 +144,7 @@ run_target() {
 }
 
 # The inputs that are needed, and those of them for the unit tests that add most coverage: at most 120
-# and 32 kB, so that all targets together stay below 2 MB.
+# and 16 kB, so that all targets together stay below 1 MB.
 keep_corpus() {
   local target=$1 reduced=$scratch/reduced-$1 kept=tests/corpus/$1 log=$folder/logs/$1.merge
   local total=0 number=0 size file
@@ -157,7 +157,7 @@ keep_corpus() {
   # Inputs that have once broken a target stay.
   find "$kept" -type f ! -name 'finding-*' -delete
   while read -r size file && ((number < 120)); do
-    if ((total + size > 32000)); then continue; fi
+    if ((total + size > 16000)); then continue; fi
     total=$((total + size))
     number=$((number + 1))
     file=${file##*/}

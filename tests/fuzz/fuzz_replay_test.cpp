@@ -80,7 +80,7 @@ TEST(Corpus, BelongsToTargetsAndIsSmall) {
       bytes += entry.file_size();
     }
   }
-  EXPECT_LT(bytes, 2'000'000u);
+  EXPECT_LT(bytes, 1'000'000u);
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ MrcalUncertaintyAnswer run_mrcal_uncertainty(const fs::path& script,
   if (run.exit_code != 0) {
     throw Error("mrcal", "its Python failed: " + run.last_output_line(), "leave mrcal out");
   }
-  return parse_mrcal_answer(read_whole(reply), problem);
+  return parse_mrcal_answer(fs::exists(reply) ? read_whole(reply) : "", problem);
 }
 
 std::string mrcal_python_version(const fs::path& script) {

@@ -12,6 +12,7 @@
 #include "calib/base/decompositions.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/calibration/pair_checks.h"
 #include "calib/camera.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr std::size_t fewest_frames = 4;
 constexpr std::size_t fewest_on_a_side = 3;  // of a split
-constexpr std::size_t fewest_matches = 12;   // of an image pair
 constexpr double least_determined = 1e-7;    // of the information scaled to a unit diagonal
 
 /// gᵀ A⁻¹ g over the directions that A determines, and their number.
@@ -225,7 +225,7 @@ std::vector<FrameScatter> frame_scatter(const BoardObservations& observations,
 std::vector<FrameScatter> frame_scatter(const PairObservations& pairs, const Rig& rig) {
   std::vector<bool> kept(pairs.size(), false);
   for (const ImagePair& image : pairs.image_pairs) {
-    if (image.count < fewest_matches) continue;
+    if (image.count < fewest_judged_matches) continue;
     std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(image.first), image.count, true);
   }
   const PairObservations enough = selected(pairs, kept);

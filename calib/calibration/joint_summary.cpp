@@ -17,6 +17,7 @@
 #include "calib/board_state.h"
 #include "calib/calibration/change_findings.h"
 #include "calib/calibration/joint_minimum.h"
+#include "calib/calibration/pair_checks.h"
 #include "calib/covariance.h"
 #include "calib/estimate/observability.h"
 #include "calib/joint_calibration.h"
@@ -67,13 +68,12 @@ std::pair<double, int> of_held(const GaussianRigPrior& prior, const JointMinimum
 /// Numbers of image pairs whose matches are outliers for the most part.
 std::vector<int> lost_image_pairs(const PairObservations& pairs,
                                   const std::vector<PairOutlier>& outliers) {
-  constexpr std::size_t fewest_matches = 12;
   std::vector<int> lost;
   for (const ImagePair& image : pairs.image_pairs) {
     const auto out = static_cast<std::size_t>(
         std::count_if(outliers.begin(), outliers.end(),
                       [&](const PairOutlier& o) { return o.image_pair == image.number; }));
-    if (image.count >= fewest_matches && 2 * out > image.count) lost.push_back(image.number);
+    if (image.count >= fewest_judged_matches && 2 * out > image.count) lost.push_back(image.number);
   }
   return lost;
 }

@@ -29,7 +29,6 @@ namespace {
 
 /// Number of pairs of an image pair that are used at most.
 constexpr std::size_t enough_pairs = 200;
-constexpr std::size_t fewest_pairs = 12;  // of an image pair that is checked
 
 /// Whether a plane explains almost all pairs within their noise. The lenses of an approximate rig
 /// bend it, in directions that pairs on a plane cannot show, so both images get an r² term.
@@ -48,7 +47,7 @@ bool on_a_plane(const PairObservations& pairs,
     points.push_back({l->head<2>(), r->head<2>()});
     sigmas.push_back(sigma_scale * pairs.sigma_of(i));
   }
-  if (points.size() < fewest_pairs) return false;
+  if (points.size() < fewest_judged_matches) return false;
   // Noise of both images in two coordinates: beyond four standard deviations once in 3000.
   return fraction_on_distorted_plane(
              points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5, QuantileKind::lower) / f) >= 0.95;
@@ -97,7 +96,7 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
                                  double sigma_scale) {
   std::size_t judged = 0, flat = 0;
   for (const ImagePair& image : pairs.image_pairs) {
-    if (image.count < fewest_pairs) continue;
+    if (image.count < fewest_judged_matches) continue;
     ++judged;
     flat += on_a_plane(pairs, image, rig, sigma_scale);
   }

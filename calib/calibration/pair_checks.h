@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "calib/calibration/observation_checks.h"
@@ -9,6 +10,9 @@
 #include "calib/rig.h"
 
 namespace vernier::internal {
+
+/// Matches of an image pair below which it is not judged by itself.
+inline constexpr std::size_t fewest_judged_matches = 12;
 
 /// Checks matched pairs with an approximate rig before solving; `covariance` is the rig's, over all
 /// its parameters (calib/rig.h). Throws Error, naming the image pairs, if a quarter of an image

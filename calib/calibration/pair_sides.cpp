@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/calibration/pair_checks.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/joint_calibration.h"
@@ -26,8 +27,7 @@ namespace {
 
 /// Number of pairs of an image pair that are used at most.
 constexpr std::size_t enough_corners = 200;
-constexpr std::size_t fewest_corners = 12;  // of an image pair that is judged
-constexpr double clear_difference = 25;     // of two costs
+constexpr double clear_difference = 25;  // of two costs
 
 /// The image of a point at infinity on the left pixel's ray in the right image, and the unit
 /// direction in which it moves as the point comes nearer.
@@ -135,7 +135,7 @@ SideCounts count_sides(const PairObservations& pairs,
                        const Eigen::MatrixXd& covariance) {
   SideCounts counts;
   for (const ImagePair& image : pairs.image_pairs) {
-    if (image.count < fewest_corners) continue;
+    if (image.count < fewest_judged_matches) continue;
     ++counts.judged;
     const Sides sides = sides_of(rig, covariance, some_of(pairs, image));
     counts.right += sides == Sides::right;

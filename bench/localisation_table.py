@@ -17,14 +17,16 @@ import random
 import subprocess
 import sys
 
-# Name, protocol, headings a node (0: along the route), looks, stated error rate of the answers.
+# Name, protocol, headings a node (0: along the route), looks, stated error rate of an answer, and
+# that of a look which needs no further one (None: the same).
 ROWS = (
-    ("near_path, one look", "near_path", 0, 1, 0.001),
-    ("near_path, a second look where unsure", "near_path", 0, 2, 0.0005),
-    ("path, one look", "path", 0, 1, 0.005),
-    ("anywhere, one look, eight headings", "anywhere", 8, 1, 0.01),
-    ("anywhere, four looks, eight headings", "anywhere", 8, 4, 0.001),
-    ("free, one look, eight headings", "free", 8, 1, 0.01),
+    ("near_path, one look", "near_path", 0, 1, 0.001, None),
+    ("near_path, a second look where unsure", "near_path", 0, 2, 0.0005, None),
+    ("path, one look", "path", 0, 1, 0.005, None),
+    ("anywhere, one look, eight headings", "anywhere", 8, 1, 0.01, None),
+    ("anywhere, four looks, eight headings", "anywhere", 8, 4, 0.001, None),
+    ("free, one look, eight headings", "free", 8, 1, 0.01, None),
+    ("near_path, a second look as in row 2, answers up to 2 %", "near_path", 0, 2, 0.02, 0.0005),
 )
 STUDY = """[study]
 trials = {trials}
@@ -39,6 +41,7 @@ headings = {headings}
 [localiser]
 looks = {looks}
 max_error_rate = {rate}
+{look_rate}
 [sources]
 calibration = {psi_c}
 {sources}
@@ -49,9 +52,10 @@ FIGURES = ("best_guess_success", "coverage", "success_when_answered", "median_er
 
 
 def study_of(row, world, options):
-    name, protocol, headings, looks, rate = row
+    name, protocol, headings, looks, rate, look_rate = row
     return STUDY.format(trials=options.trials, seed=options.seed, protocol=protocol, world=world,
                         headings=headings or '"path"', looks=looks, rate=rate,
+                        look_rate="" if look_rate is None else f"look_error_rate = {look_rate}",
                         psi_c=options.psi_c, sources=options.sources.replace(",", "\n"))
 
 

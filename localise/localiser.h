@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,7 +47,8 @@ struct LocalisationAnswer {
   bool states_probability() const { return probability > 0; }
   std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
   /// The turn of a further look that tells the modes apart best, or places that rank best where
-  /// there are no two modes; 0 where the map tells nothing, or the answer is sure.
+  /// there are no two modes; 0 where the map tells nothing, or the answer is sure enough
+  /// (look_error_rate).
   double next_turn_rad = 0;
   std::string failure;  ///< why, if it failed
   /// CPU time that another process spent on it, to a tick of the system's scheduler (some ms).
@@ -88,6 +90,9 @@ struct LocaliserOptions {
   /// `lines` abstains (unsure) where an error is more probable than this; 1: an answer is never
   /// unsure.
   double max_error_rate = 0.01;
+  /// `lines` asks for a further look (next_turn_rad) where an error is more probable than this, at
+  /// most max_error_rate; none: where it is unsure.
+  std::optional<double> look_error_rate;
   /// What `lines` takes for the probability that the robot stands where the map holds nothing,
   /// before it looks; below 1. 0: it is on the map.
   double off_map = 0;

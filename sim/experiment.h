@@ -98,7 +98,8 @@ struct ExperimentSettings {
   localise::LocaliserOptions localiser;
   AppearanceOptions appearance{.view_change = 1, .noise = 0.3};  ///< of corners
   /// Views of a query at most, from one position: another one is taken as long as the localiser
-  /// does not answer, turned as it asks for (next_turn_rad), or away from those taken.
+  /// asks for it (next_turn_rad), and away from those taken where it does not answer and asks for
+  /// none.
   int looks = 1;
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;

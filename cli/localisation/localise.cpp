@@ -176,11 +176,12 @@ std::vector<LocalisedQuery> simulated_queries(const LocaliseArguments& options,
 
 /// Refuses options that the method does not use.
 void check_options_of_method(const LocaliseArguments& options, const CLI::App& verb) {
-  constexpr std::array<std::pair<const char*, const char*>, 10> known{
+  constexpr std::array<std::pair<const char*, const char*>, 11> known{
       {{"--looks", "looks"},
        {"--ranker", "ranker"},
        {"--candidates", "candidates"},
        {"--max-error-rate", "max_error_rate"},
+       {"--look-error-rate", "look_error_rate"},
        {"--off-map", "off_map"},
        {"--repeats", "repeats"},
        {"--stages", "stages"},
@@ -279,6 +280,9 @@ void add_localise(CLI::App& app, Session& session) {
   verb->add_option("--max-error-rate", o->localiser.max_error_rate,
                    "of lines: unsure where an error is more probable; 1: an answer is never unsure")
       ->capture_default_str();
+  verb->add_option("--look-error-rate", o->localiser.look_error_rate,
+                   "of lines: asks for a further look where an error is more probable, "
+                   "at most --max-error-rate (default: the same)");
   verb->add_option("--off-map", o->localiser.off_map,
                    "of lines: probability that the robot is where the map holds nothing; 0: never")
       ->capture_default_str();

@@ -156,7 +156,7 @@ std::string next_looks_text(const std::vector<LocalisedQuery>& queries) {
   int asked = 0;
   for (const LocalisedQuery& query : queries) {
     const LocalisationAnswer& answer = query.answer;
-    if (answer.status == LocalisationStatus::answered || answer.next_turn_rad == 0) continue;
+    if (answer.next_turn_rad == 0) continue;
     if (++asked > most_shown) continue;
     text += fmt::format("{}{}: {:+.0f} deg", text.empty() ? "" : ", ", query.name,
                         degrees * answer.next_turn_rad);

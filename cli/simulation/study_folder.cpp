@@ -59,9 +59,15 @@ Json thresholds_json(const StatedErrors& stated) {
     json.push_back({{"max_error_rate", at.max_error_rate},
                     {"coverage", at.coverage},
                     {"answered", at.answered},
-                    {"wrong", at.wrong}});
+                    {"wrong", at.wrong},
+                    {"stated_error", at.stated_error}});
   }
   return json;
+}
+
+/// Whether the looks of a query do not depend on the threshold of its answer.
+bool looks_are_apart(const ExperimentSettings& settings) {
+  return settings.looks == 1 || settings.localiser.look_error_rate.has_value();
 }
 
 /// The rigs of a study, with the kind of covariance that psi_c scales; null if there is none.
@@ -152,25 +158,25 @@ void add_localisation(const CellResult& cell, Json& json) {
   const CellSummary& s = cell.summary;
   const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
-  json.update(
-      {{"maps", s.maps},
-       {"best_guess_success", of_trials(s.best_guess_success)},
-       {"node_success", of_trials(s.node_success)},
-       {"recall_0_5m_5deg", of_trials(s.recall_05)},
-       {"recall_0_25m_2deg", of_trials(s.recall_025)},
-       {"median_error_m", json_number(s.median_error)},
-       {"median_heading_error_deg",
-        json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
-       {"protocol", name(cell.cell.experiment.protocol)},
-       {"world_ceiling", cell.ceiling ? Json(cell.ceiling->success) : Json()},
-       {"world_ceiling_interval_95",
-        cell.ceiling ? pair(cell.ceiling->success_interval_95) : Json()},
-       {"world_ceiling_queries", cell.ceiling ? Json(cell.ceiling->queries) : Json()},
-       {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
-       {"unaliased_share_interval_95",
-        cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
-       {"reliability", reliability_json(cell.stated)},
-       {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.stated) : Json()}});
+  json.update({{"maps", s.maps},
+               {"best_guess_success", of_trials(s.best_guess_success)},
+               {"node_success", of_trials(s.node_success)},
+               {"recall_0_5m_5deg", of_trials(s.recall_05)},
+               {"recall_0_25m_2deg", of_trials(s.recall_025)},
+               {"median_error_m", json_number(s.median_error)},
+               {"median_heading_error_deg",
+                json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
+               {"protocol", name(cell.cell.experiment.protocol)},
+               {"world_ceiling", cell.ceiling ? Json(cell.ceiling->success) : Json()},
+               {"world_ceiling_interval_95",
+                cell.ceiling ? pair(cell.ceiling->success_interval_95) : Json()},
+               {"world_ceiling_queries", cell.ceiling ? Json(cell.ceiling->queries) : Json()},
+               {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
+               {"unaliased_share_interval_95",
+                cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
+               {"reliability", reliability_json(cell.stated)},
+               {"thresholds",
+                looks_are_apart(cell.cell.experiment) ? thresholds_json(cell.stated) : Json()}});
 }
 
 /// What cells of other systems have.

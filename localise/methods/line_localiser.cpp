@@ -45,11 +45,11 @@ LineLocaliser::LineLocaliser(const TopologicalMap& map, const LocaliserOptions& 
       ranker_(make_ranker(options.ranker, map, options.histograms)),
       grid_(map) {
   const double least = least_error_rate(map.nodes.size());
-  if (options.stages.compare && options.max_error_rate < least) {
+  if (options.stages.compare && look_error_rate() < least) {
     throw Error(
-        "max_error_rate",
+        options.look_error_rate ? "look_error_rate" : "max_error_rate",
         fmt::format("{:g} is below {:.2g}, the least that can be stated in a map of {} nodes",
-                    options.max_error_rate, least, map.nodes.size()),
+                    look_error_rate(), least, map.nodes.size()),
         "use a larger one");
   }
 }
@@ -81,7 +81,7 @@ LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) co
   std::vector<std::vector<RankedNode>> ranked;
   for (const Look& look : looks) ranked.push_back(ranker_->rank(look.view, options_.candidates));
   if (!few) result = search(ranked, query);
-  if (result.status != LocalisationStatus::answered) {
+  if (result.status != LocalisationStatus::answered || 1 - result.probability > look_error_rate()) {
     result.next_turn_rad = telling_turn(result.modes, ranked[0], query);
   }
   return result;
@@ -102,7 +102,7 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
     rounds.push_back({options_.candidates, many_finalists});
     if (options_.stages.align) rounds.push_back({options_.candidates, many_finalists, true});
   }
-  const double sure = 1 - std::max(std::min(options_.max_error_rate, sure_error_rate),
+  const double sure = 1 - std::max(std::min(look_error_rate(), sure_error_rate),
                                    least_error_rate(map_.nodes.size()));
   LocalisationAnswer result;
   result.status = LocalisationStatus::no_match;

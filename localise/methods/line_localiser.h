@@ -81,6 +81,10 @@ class LineLocaliser : public Localiser {
   void compare_rivals(const Pose2D& pose, Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Starts starts, Query& query) const;
   static double observations_of(const Query& query);
+  /// Where an error is more probable, a further look is wanted.
+  double look_error_rate() const {
+    return options_.look_error_rate.value_or(options_.max_error_rate);
+  }
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
   JointAgreement joint_agreement(const Pose2D& first,

@@ -44,6 +44,11 @@ void check(const LocaliserOptions& options) {
     throw Error("localiser options", "max_error_rate is not above 0 and at most 1",
                 "use 1 for an answer to every query");
   }
+  if (options.look_error_rate &&
+      !(*options.look_error_rate > 0 && *options.look_error_rate <= options.max_error_rate)) {
+    throw Error("localiser options", "look_error_rate is not above 0 and at most max_error_rate",
+                "use a smaller one, or none");
+  }
   if (!(options.off_map >= 0 && options.off_map < 1)) {
     throw Error("localiser options", "off_map is not from 0 to below 1",
                 "use 0 for a robot that stays on the map");
@@ -133,8 +138,8 @@ class Registry {
             {"lines",
              {factory<LineLocaliser>(),
               {},
-              {"candidates", "endpoint_sigma", "histograms", "looks", "max_error_rate", "off_map",
-               "ranker", "repeats", "stages"}}},
+              {"candidates", "endpoint_sigma", "histograms", "look_error_rate", "looks",
+               "max_error_rate", "off_map", "ranker", "repeats", "stages"}}},
             {"pgh", {factory<PghLocaliser>(), {}, {"candidates", "endpoint_sigma", "histograms"}}},
             {"pgh_baseline", {factory<BaselineLocaliser>(), {}, {"histograms"}}},
             {"pgh_baseline_vectorised",
@@ -222,7 +227,8 @@ bool uses_option(std::string_view method,
   if (used.empty()) return true;
   if (method == "lines") {
     if (option == "histograms" && options.ranker == "view") return false;
-    const bool is_of_posterior = option == "off_map" || option == "repeats";
+    const bool is_of_posterior =
+        option == "off_map" || option == "repeats" || option == "look_error_rate";
     if (is_of_posterior && !options.stages.compare) return false;
   }
   return std::find(used.begin(), used.end(), option) != used.end();

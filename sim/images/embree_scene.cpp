@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <array>
 #include <cstddef>
@@ -16,9 +17,10 @@
 namespace vernier::sim::internal {
 namespace {
 
-/// One device for the process: what it costs to make one is 1 ms, and it starts no threads.
+/// One device for the process: what it costs to make one is 1 ms, and it starts no threads. It is
+/// not limited to one thread here: Embree would limit all of TBB in the process, studies too.
 RTCDevice device() {
-  static RTCDevice shared = rtcNewDevice("threads=1,start_threads=0");
+  static RTCDevice shared = rtcNewDevice("threads=0");
   if (shared != nullptr) return shared;
   // Embree tells any failure of its own to start as one of no kind; memory is the usual one.
   if (rtcGetDeviceError(nullptr) != RTC_ERROR_UNSUPPORTED_CPU) throw std::bad_alloc();
@@ -45,6 +47,12 @@ void keep_crossing(const RTCFilterFunctionNArguments* at) {
     found.distance[ray][n] = RTCRayN_tfar(at->ray, at->N, i);
     ++n;
   }
+}
+
+/// On the calling thread alone: who makes many scenes makes them at the same time.
+void commit(RTCScene scene) {
+  tbb::task_arena alone(1, 1);
+  alone.execute([scene] { rtcCommitScene(scene); });
 }
 
 using Valid = std::array<int, bundle_size>;
@@ -106,7 +114,7 @@ RayScene::RayScene(const Triangles& triangles) : tree_(new Tree) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(tree_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(tree_->scene);
+  commit(tree_->scene);
 }
 
 RayScene::~RayScene() = default;

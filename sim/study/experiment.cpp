@@ -294,7 +294,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     result.wall_ms += clock.wall_ms();
 
     if (taken == 0) first = std::move(sighting);
-    if (answer.status == LocalisationStatus::answered) break;
+    if (answer.status == LocalisationStatus::answered && answer.next_turn_rad == 0) break;
     turn_rad = answer.next_turn_rad != 0 ? answer.next_turn_rad : newest_turn_rad(looks);
   }
 

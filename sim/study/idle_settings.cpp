@@ -204,6 +204,21 @@ void check_answers_are_possible(const StudyFile& study) {
   }
 }
 
+/// Throws Error for a cell that would answer where it wants no further look, and not where it wants
+/// one.
+void check_look_rates(const StudyFile& study) {
+  for (const StudyCell& cell : study.cells) {
+    const LocaliserOptions& options = cell.experiment.localiser;
+    if (options.look_error_rate.value_or(0) <= options.max_error_rate) continue;
+    throw Error(place_of(study, "localiser.look_error_rate"),
+                fmt::format("localiser.look_error_rate = {:g} is above localiser.max_error_rate = "
+                            "{:g}",
+                            *options.look_error_rate, options.max_error_rate),
+                "use a smaller one, or leave it out: where the localiser does not answer, it asks "
+                "for a further look in any case");
+  }
+}
+
 }  // namespace
 
 std::string key_of(const SourceParameter& source) { return "sources." + std::string(source.name); }
@@ -229,6 +244,7 @@ std::vector<IdleSource> check_settings_act(const Study& study) {
   check_options_are_used(file);
   check_designs(study);
   check_answers_are_possible(file);
+  check_look_rates(file);
   std::vector<IdleSource> idle;
   for (const auto& [key, line] : file.lines) {
     if (key.find('.') == std::string::npos) continue;

@@ -22,7 +22,8 @@ using namespace vernier::internal;
 void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
   check_keys(table,
              {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "off_map", "repeats", "stages", "command", "time_limit_s", "corners", "min_corners"},
+              "look_error_rate", "off_map", "repeats", "stages", "command", "time_limit_s",
+              "corners", "min_corners"},
              "[localiser]");
   if (const auto* method = table.get("method")) {
     settings.method = text(*method, "localiser.method");
@@ -55,6 +56,9 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
   }
   if (const auto* rate = table.get("max_error_rate")) {
     settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
+  }
+  if (const auto* rate = table.get("look_error_rate")) {
+    settings.localiser.look_error_rate = number_in(*rate, "localiser.look_error_rate", 1e-6, 1);
   }
   if (const auto* repeats = table.get("repeats")) {
     settings.localiser.repeats = number_in(*repeats, "localiser.repeats", 0, 0.999);

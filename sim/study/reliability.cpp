@@ -47,6 +47,7 @@ void StatedErrors::add(const TrialResult& trial) {
   range.stated_error += stated;
   for (std::size_t i = 0; i < limits.size() && stated <= limits[i]; ++i) {
     ++up_to_[i].answers;
+    up_to_[i].stated_error += stated;
     up_to_[i].wrong += wrong;
   }
 }
@@ -75,7 +76,8 @@ std::vector<ThresholdFigures> StatedErrors::thresholds() const {
     all.push_back({.max_error_rate = limits[i],
                    .coverage = static_cast<double>(at.answers) / trials_,
                    .answered = at.answers,
-                   .wrong = at.wrong});
+                   .wrong = at.wrong,
+                   .stated_error = at.answers > 0 ? at.stated_error / at.answers : 0});
   }
   return all;
 }

@@ -24,6 +24,7 @@ struct ThresholdFigures {
   double max_error_rate = 1;
   double coverage = 0;  ///< fraction of trials answered at this threshold
   int answered = 0, wrong = 0;
+  double stated_error = 0;  ///< mean of what these answers state; 0 without any
 };
 
 /// Whether more answers are wrong than a stated error rate allows, by more than chance: at least
@@ -43,8 +44,8 @@ class StatedErrors {
   /// Statistics 26, 1977). Trials without a guess are left out, and so are ranges without answers.
   /// Empty for a method that states no probabilities.
   std::vector<ReliabilityBin> reliability() const;
-  /// The same trials at other thresholds, 1 to 0.0001: of one look only, as further looks are
-  /// taken depending on the threshold. Empty for a method that states no probabilities.
+  /// The same trials at other thresholds, 1 to 0.0001, as if what looks were taken did not depend
+  /// on them. Empty for a method that states no probabilities.
   std::vector<ThresholdFigures> thresholds() const;
 
  private:

@@ -165,6 +165,9 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   if (s.localiser.max_error_rate != usual.max_error_rate) {
     all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
   }
+  if (s.localiser.look_error_rate) {
+    all["localiser.look_error_rate"] = fmt::format("{}", *s.localiser.look_error_rate);
+  }
   if (s.localiser.repeats != usual.repeats) {
     all["localiser.repeats"] = fmt::format("{}", s.localiser.repeats);
   }

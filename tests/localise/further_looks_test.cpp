@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <vector>
 
+#include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -50,6 +52,32 @@ TEST(LineLocaliser, IsUnsureBetweenTwinsAndSaysWhereToLook) {
     EXPECT_LT(distance_m(sure.pose, {20.0 * i, 0, 0}), 0.02);
     EXPECT_LT(std::abs(heading_difference_rad(sure.pose, {})), 0.01);
   }
+}
+
+// How sure an answer has to be, and how sure one that needs no further look, are two questions.
+TEST(LineLocaliser, AnswersAndAsksForALookWhereBothAreWanted) {
+  const TopologicalMap map = map_of_twins();
+  LocaliserOptions options;
+  options.max_error_rate = 0.7;
+  const LocalisationAnswer plain =
+      make_localiser("lines", map, options)->localise(map.nodes[0].view);
+  EXPECT_EQ(plain.status, LocalisationStatus::answered);
+  EXPECT_EQ(plain.next_turn_rad, 0);
+
+  options.look_error_rate = 0.01;
+  const auto localiser = make_localiser("lines", map, options);
+  const LocalisationAnswer answer = localiser->localise(map.nodes[0].view);
+  EXPECT_EQ(answer.status, LocalisationStatus::answered);
+  EXPECT_NEAR(answer.next_turn_rad, std::numbers::pi / 2, 0.6);
+  const std::vector<Look> looks{{map.nodes[0].view, 0}, {map.nodes[1].view, std::numbers::pi / 2}};
+  EXPECT_EQ(localiser->localise_looks(looks).next_turn_rad, 0);  // sure
+
+  for (const double wrong : {0.0, -0.1, 0.71, std::numeric_limits<double>::quiet_NaN()}) {
+    options.look_error_rate = wrong;
+    EXPECT_THROW(make_localiser("lines", map, options), Error) << wrong;
+  }
+  options.look_error_rate = 1e-9;  // less than can be stated in any map
+  EXPECT_THROW(make_localiser("lines", map, options), Error);
 }
 
 // The list was in the order of before it was counted how much of each mode lies within 1 m: the

@@ -3,6 +3,7 @@
 #include "sim/images/render.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -206,6 +207,15 @@ TEST(Render, IsTheSameForAnyNumberOfThreads) {
       return a == b || (std::isnan(a) && std::isnan(b));
     }));
   }
+}
+
+// Embree, told to use one thread, let the whole process have no more: a study that drew images went
+// on with one.
+TEST(Render, LeavesTheProcessItsThreads) {
+  constexpr auto limit = tbb::global_control::max_allowed_parallelism;
+  const tbb::global_control four(limit, 4);
+  const ImageScene scene = image_scene(small_office());
+  EXPECT_EQ(tbb::global_control::active_value(limit), 4u);
 }
 
 TEST(Render, ShadowsOnlyDarken) {

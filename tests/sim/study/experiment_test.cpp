@@ -116,6 +116,32 @@ TEST_F(Experiments, FurtherLooksAreTakenWhereTheFirstIsUnsure) {
   EXPECT_GT(sure_of_four, sure_of_one);
 }
 
+TEST_F(Experiments, LooksDoNotDependOnWhatIsAnsweredWhereTheyAreAskedForApart) {
+  ExperimentSettings s = settings(QueryProtocol::near_path);
+  s.looks = 2;
+  s.localiser.max_error_rate = 0.001;
+  const TrialBlock block{.block = 0, .first = 0, .count = 40};
+  const auto careful = experiment(s).run_block(block);
+  s.localiser.look_error_rate = 0.001;
+  s.localiser.max_error_rate = 1;
+  const auto bold = experiment(s).run_block(block);
+  int twice = 0, other = 0;
+  for (std::size_t i = 0; i < careful.size(); ++i) {
+    EXPECT_TRUE(bold[i].answered());
+    twice += bold[i].looks == 2;
+    // Where the map tells no turn that helps, what is answered already asks for none.
+    other += bold[i].looks != careful[i].looks;
+    if (bold[i].looks != careful[i].looks) {
+      EXPECT_LT(bold[i].looks, careful[i].looks);
+      continue;
+    }
+    EXPECT_EQ(bold[i].probability, careful[i].probability);
+    EXPECT_EQ(bold[i].answer.x_m, careful[i].answer.x_m);
+  }
+  EXPECT_GT(twice, 0);
+  EXPECT_LE(other, 2);
+}
+
 /// Answers the first node, whatever it sees, and counts the looks.
 class First : public Localiser {
  public:

@@ -64,6 +64,7 @@ TEST(Reliability, AThresholdTradesCoverageForErrors) {
     EXPECT_EQ(at.answered, both ? 90 : 80) << at.max_error_rate;
     EXPECT_EQ(at.wrong, both ? 10 : 0) << at.max_error_rate;
     EXPECT_DOUBLE_EQ(at.coverage, both ? 0.9 : 0.8) << at.max_error_rate;
+    EXPECT_NEAR(at.stated_error, both ? (80 * 0.0001 + 10 * 0.1) / 90 : 0.0001, 1e-12);
   }
 }
 

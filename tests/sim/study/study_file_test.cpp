@@ -118,7 +118,7 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   };
   const auto lines = cell(
       "method = \"lines\"\nranker = \"pgh\"\ncandidates = 7\nmax_error_rate = 0.05\noff_map = "
-      "0.1\nrepeats = 0.2\nlooks = 3\n");
+      "0.1\nrepeats = 0.2\nlooks = 3\nlook_error_rate = 0.01\n");
   EXPECT_EQ(lines.experiment.localiser.ranker, "pgh");
   EXPECT_EQ(lines.experiment.localiser.candidates, 7);
   EXPECT_EQ(lines.experiment.localiser.max_error_rate, 0.05);
@@ -129,6 +129,8 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   EXPECT_EQ(lines.settings.at("localiser.repeats"), "0.2");
   EXPECT_EQ(lines.settings.at("localiser.off_map"), "0.1");
   EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
+  EXPECT_EQ(lines.experiment.localiser.look_error_rate, 0.01);
+  EXPECT_EQ(lines.settings.at("localiser.look_error_rate"), "0.01");
   EXPECT_EQ(cell("method = \"pgh\"\ncandidates = 4\n").settings.at("localiser.candidates"), "4");
   const auto staged = cell("stages = \"compare+align\"\n");
   EXPECT_TRUE(staged.experiment.localiser.stages.align);
@@ -141,6 +143,7 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   // Keys of older stores hold none of these.
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.candidates"), 0u);
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);
+  EXPECT_EQ(cell("").settings.count("localiser.look_error_rate"), 0u);
   for (const char* wrong : {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n",
                             "max_error_rate = 1.5\n", "off_map = 1\n", "repeats = 1\n",
                             "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",

@@ -122,7 +122,8 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                       std::exp(options.steepness * (misfit - options.lost_misfit) * root);
   const double thin = options.thin * std::exp(-seen / options.thin_observations);
   double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown);
-  const std::vector<double> weights = weights_of(modes, share, options, evidence_between);
+  std::vector<double> weights = weights_of(modes, share, options, evidence_between);
+  for (double& weight : weights) weight = std::pow(weight, options.tempering);
   total = std::accumulate(weights.begin(), weights.end(), total);
   if (options.off_map > 0) {
     const double gain =

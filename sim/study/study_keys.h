@@ -27,7 +27,7 @@ inline constexpr int results_version = 2;
 
 /// The same of the method `lines` alone, also where a default changes, for those are not part of a
 /// key. 7: modes come by their probability, and views of few lines ask for a turn.
-inline constexpr int lines_version = 7;
+inline constexpr int lines_version = 8;
 
 /// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
 /// of another size use other maps per trial and are therefore stored under another key.

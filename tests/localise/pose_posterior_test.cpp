@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -44,6 +45,18 @@ TEST(PosePosterior, SharesOutProbability) {
   // Two poses close to each other are more probable together than one that scores better alone.
   const std::vector<Hypothesis> pair{{{0, 0, 0}, 0, 0}, {{8, 0, 0}, 1, -1}, {{8.5, 0, 0}, 1, -1}};
   EXPECT_EQ(pose_posterior(pair, 300, 200, options)[0].best.node, 1);
+}
+
+// Odds of a rival are those of the scores' difference, as often as it counts.
+TEST(PosePosterior, ADifferenceOfScoresIsTempered) {
+  PosteriorOptions options;
+  options.thin = options.unknown = 0;
+  for (const double nats : {0.5, 3.0, 9.0}) {
+    const std::vector<Hypothesis> two{{{0, 0, 0}, 0, -5}, {{8, 0, 0}, 1, -5 - nats}};
+    const auto modes = pose_posterior(two, 300, 200, options);
+    EXPECT_NEAR(std::log(modes[0].probability / modes[1].probability),
+                options.tempering * options.evidence_share * nats, 1e-9);
+  }
 }
 
 // 0.1 times an overflow must not become NaN, and certainty has a floor.

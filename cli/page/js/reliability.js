@@ -72,10 +72,10 @@ function threshold_plot(study) {
     x: cell.thresholds.map((at) => 100 * at.coverage), y: cell.thresholds.map(rate),
     line: { color: series_colour(i), width: 1.5 }, marker: { size: 6, symbol: i },
     showlegend: cells.length > 1,
-    customdata: cell.thresholds.map((at) => [plot_text(cell.label), percent(at.max_error_rate),
-      count(at.wrong), count(at.answered)]),
-    hovertemplate: "%{customdata[0]}<br>stated at most %{customdata[1]}<br>%{customdata[2]} of"
-      + " %{customdata[3]} wrong<extra></extra>",
+    customdata: cell.thresholds.map((at) => [plot_text(cell.label), percent(at.max_error_rate, 3),
+      count(at.wrong), count(at.answered), percent(at.stated_error, 3)]),
+    hovertemplate: "%{customdata[0]}<br>each stated at most %{customdata[1]}, together"
+      + " %{customdata[4]}<br>%{customdata[2]} of %{customdata[3]} wrong<extra></extra>",
   }));
   const lowest = Math.min(...data.flatMap((trace) => trace.x.filter(is_number)));
   return { data, layout: { xaxis: axis("queries answered, %", { range: [lowest - 1, 100.5] }),

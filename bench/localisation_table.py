@@ -6,11 +6,11 @@
     bench/localisation_table.py build/release/vernier -o out/table                 # workshop
     bench/localisation_table.py build/release/vernier -o out/table --worlds 201-220 --trials 500
 
-Runs one study a row (and world) and continues those that the folder holds. Besides the answers that
-each state an error of at most the row's rate it prints those that together do: the largest threshold
-of `thresholds` at which the mean of what all worlds' answers state is within it. Of generated worlds it
-prints means over worlds with their 95 % interval by a bootstrap that resamples whole worlds. Needs
-only the Python standard library. Times are CPU times of one thread a query.
+Runs one study a row (and world) and continues those that the folder holds. It prints how many
+answers each state an error of at most the row's rate, and how many do together: at the largest
+threshold at which the mean of what the answers of all worlds state is within it. Of generated
+worlds it prints means over worlds with their 95 % interval by a bootstrap that resamples whole
+worlds. Needs only the Python standard library. Times are CPU times of one thread a query.
 """
 import argparse
 import json
@@ -19,6 +19,7 @@ import random
 import subprocess
 import sys
 
+LOOK_RATE = 0.005  # a further look where an error is more probable, in rows of several
 # Name, protocol, headings a node (0: along the route), looks, stated error rate of the answers.
 ROWS = (
     ("near_path, one look", "near_path", 0, 1, 0.001),
@@ -46,7 +47,7 @@ max_error_rate = {rate}
 calibration = {psi_c}
 {sources}
 """
-FIGURES = ("best_guess_success", "coverage", "success_when_answered", "median_error_m",
+FIGURES = ("best_guess_success", "median_error_m",
            "recall_0_5m_5deg", "recall_0_25m_2deg", "cpu_ms_mean", "cpu_ms_p95", "world_ceiling",
            "unaliased_share")
 
@@ -54,9 +55,8 @@ FIGURES = ("best_guess_success", "coverage", "success_when_answered", "median_er
 def study_of(row, world, options):
     name, protocol, headings, looks, rate = row
     return STUDY.format(trials=options.trials, seed=options.seed, protocol=protocol, world=world,
-                        headings=headings or '"path"', looks=looks, rate=rate,
-                        # said apart, so that other thresholds do not change the looks
-                        looking=f"look_error_rate = {rate}" if looks > 1 else "",
+                        headings=headings or '"path"', looks=looks, rate=rate if looks == 1 else LOOK_RATE,
+                        looking=f"look_error_rate = {LOOK_RATE}" if looks > 1 else "",
                         psi_c=options.psi_c, sources=options.sources.replace(",", "\n"))
 
 
@@ -98,20 +98,18 @@ def mean_and_interval(values, draws=4000):
     return sum(values) / len(values), means[int(0.025 * draws)], means[int(0.975 * draws)]
 
 
-def answers_together(cells, rate):
-    """The answers of all cells at the largest threshold at which they state `rate` together."""
+def answers_at(cells, is_meant):
+    """Threshold, answers and wrong ones of all cells, at the largest threshold that is meant."""
     for at in zip(*(cell["thresholds"] for cell in cells)):  # from unsure to sure
         answered = sum(of["answered"] for of in at)
-        if answered and sum(of["answered"] * of["stated_error"] for of in at) <= rate * answered:
+        stated = sum(of["answered"] * of["stated_error"] for of in at)
+        if answered and is_meant(at[0]["max_error_rate"], stated / answered):
             return at[0]["max_error_rate"], answered, sum(of["wrong"] for of in at)
     return None
 
 
 def print_row(name, rate, cells):
     trials = sum(cell["trials"] for cell in cells)
-    answered = sum(round(cell["coverage"] * cell["trials"]) for cell in cells)
-    right = sum(round((cell["success_when_answered"] or 0) * round(cell["coverage"] * cell["trials"]))
-                for cell in cells)
     parts = []
     for figure in FIGURES:
         values = [cell[figure] for cell in cells if cell.get(figure) is not None]
@@ -131,14 +129,14 @@ def print_row(name, rate, cells):
     if relative:
         mean, low, high = mean_and_interval(relative)
         parts.append(f"÷ ceiling {mean:.2f}" + (f" [{low:.2f}, {high:.2f}]" if len(cells) > 1 else ""))
-    print(f"{name}: {trials} queries, {right} of {answered} answers right\n    " + "; ".join(parts),
-          flush=True)
-    together = answers_together(cells, rate)
-    if together:
-        threshold, all_answered, wrong = together
-        print(f"    answers that together state {rate:g} (each at most {threshold:g}): "
-              f"{100 * all_answered / trials:.2f} % of the queries, "
-              f"{all_answered - wrong} of {all_answered} right", flush=True)
+    print(f"{name}: {trials} queries\n    " + "; ".join(parts), flush=True)
+    for what, at in (("each", answers_at(cells, lambda most, _: most <= rate)),
+                     ("together", answers_at(cells, lambda _, mean: mean <= rate))):
+        if at:
+            threshold, answered, wrong = at
+            print(f"    answers that {what} state {rate:g} (threshold {threshold:g}): "
+                  f"{100 * answered / trials:.2f} %, {answered - wrong} of {answered} right",
+                  flush=True)
 
 
 def main():

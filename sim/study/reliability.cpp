@@ -20,8 +20,9 @@ constexpr std::array<double, 13> borders{0,    2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.0
                                          0.02, 0.05, 0.1,  0.2,  0.5,  1};
 
 /// From unsure to sure.
-constexpr std::array<double, 13> limits{1,    0.5,  0.2,  0.1,  0.05, 0.02, 0.01,
-                                        5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4};
+constexpr std::array<double, 25> limits{1,    0.7,  0.5,   0.3,  0.2,  0.15,   0.1,  0.07, 0.05,
+                                        0.03, 0.02, 0.015, 0.01, 7e-3, 5e-3,   3e-3, 2e-3, 1.5e-3,
+                                        1e-3, 7e-4, 5e-4,  3e-4, 2e-4, 1.5e-4, 1e-4};
 
 }  // namespace
 

@@ -54,7 +54,7 @@ class StatedErrors {
     double stated_error = 0;  // sum
   };
   std::array<Count, 12> by_range_{};  // of the stated error rate
-  std::array<Count, 13> up_to_{};     // at each threshold
+  std::array<Count, 25> up_to_{};     // at each threshold
   int trials_ = 0, answered_ = 0;
   double stated_of_answers_ = 0;  // sum
   bool states_probabilities_ = false;

@@ -62,9 +62,9 @@ struct PosteriorOptions {
   double evidence_share = 0.55;
   /// A mode that weighs w against the best one, by all of the above, counts w^tempering: what a
   /// model that is not quite true says is tempered (Grünwald and van Ommen, Bayesian Analysis 12,
-  /// 2017). By maximum likelihood on the offices (0.65 to 0.7 along the route, near it with one look
-  /// and with two, and anywhere): untempered, of what states 0.1 to 5 % two to ten times as much
-  /// was wrong.
+  /// 2017). By maximum likelihood on the offices (0.65 to 0.7 along the route, near it with one
+  /// look and with two, and anywhere): untempered, of what states 0.1 to 5 % two to ten times as
+  /// much was wrong.
   double tempering = 0.7;
   double usual_misfit = 0.4, lost_misfit = 2.3, steepness = 8;
   double thin = 3e-5, thin_observations = 12;    ///< thin: of a node

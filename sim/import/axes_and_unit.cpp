@@ -149,7 +149,8 @@ std::optional<int> clear_winner(const std::array<double, 3>& values, double time
 Mesh of_one_size(Mesh mesh) {
   constexpr double size_m = 10, weld_m = 1e-4;
   const auto [low, high] = extent_of(mesh);
-  const double scale = size_m / std::max((high - low).norm(), 1e-300);
+  // squares of the smallest coordinates would be 0
+  const double scale = size_m / std::max((high - low).stableNorm(), 1e-300);
   for (Eigen::Vector3d& v : mesh.vertices) v = scale * (v - low);
   return welded(mesh, weld_m);
 }

@@ -55,7 +55,8 @@ FIGURES = ("best_guess_success", "median_error_m",
 def study_of(row, world, options):
     name, protocol, headings, looks, rate = row
     return STUDY.format(trials=options.trials, seed=options.seed, protocol=protocol, world=world,
-                        headings=headings or '"path"', looks=looks, rate=rate if looks == 1 else LOOK_RATE,
+                        headings=headings or '"path"', looks=looks,
+                        rate=LOOK_RATE if looks > 1 else rate,
                         looking=f"look_error_rate = {LOOK_RATE}" if looks > 1 else "",
                         psi_c=options.psi_c, sources=options.sources.replace(",", "\n"))
 

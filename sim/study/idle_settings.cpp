@@ -204,8 +204,7 @@ void check_answers_are_possible(const StudyFile& study) {
   }
 }
 
-/// Throws Error for a cell that would answer where it wants no further look, and not where it wants
-/// one.
+/// Throws Error for a cell that would be unsure where it wants no further look.
 void check_look_rates(const StudyFile& study) {
   for (const StudyCell& cell : study.cells) {
     const LocaliserOptions& options = cell.experiment.localiser;

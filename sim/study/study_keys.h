@@ -26,7 +26,7 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& setting
 inline constexpr int results_version = 2;
 
 /// The same of the method `lines` alone, also where a default changes, for those are not part of a
-/// key. 7: modes come by their probability, and views of few lines ask for a turn.
+/// key. 8: the weights of a posterior are tempered.
 inline constexpr int lines_version = 8;
 
 /// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks

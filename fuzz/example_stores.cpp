@@ -84,16 +84,22 @@ void require_same(const std::vector<TrialResult>& a, const std::vector<TrialResu
   }
 }
 
-void require_same(const StoreContent& a, const StoreContent& b) {
+void require_kept(const StoreContent& a, const StoreContent& b) {
   for (const auto& [key, value] : a.notes) {
     require(b.notes.count(key) == 1 && b.notes.at(key) == value, "notes are kept");
   }
-  require(a.blocks.size() == b.blocks.size(), "the number of blocks is kept");
-  for (std::size_t i = 0; i < a.blocks.size(); ++i) {
-    require(a.blocks[i].cell == b.blocks[i].cell && a.blocks[i].block == b.blocks[i].block,
-            "blocks are kept");
-    require_same(a.blocks[i].trials, b.blocks[i].trials);
+  for (const StoredBlock& block : a.blocks) {
+    const auto kept = std::find_if(b.blocks.begin(), b.blocks.end(), [&](const StoredBlock& other) {
+      return other.cell == block.cell && other.block == block.block;
+    });
+    require(kept != b.blocks.end(), "blocks are kept");
+    require_same(block.trials, kept->trials);
   }
+}
+
+void require_same(const StoreContent& a, const StoreContent& b) {
+  require(a.blocks.size() == b.blocks.size(), "the number of blocks is kept");
+  require_kept(a, b);
 }
 
 }  // namespace vernier::fuzz

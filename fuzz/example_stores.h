@@ -21,6 +21,9 @@ sim::internal::StoreNotes example_notes();
 /// opened there is small.
 void make_small_pages(const std::filesystem::path& file);
 
+/// `b` holds what `a` does, to the bit, and may hold more; or throws Finding.
+void require_kept(const sim::internal::StoreContent& a, const sim::internal::StoreContent& b);
+
 /// Equal to the bit, or throws Finding. `b` may have more notes: an empty file has none, and
 /// opening it adds the first.
 void require_same(const std::vector<sim::TrialResult>& a, const std::vector<sim::TrialResult>& b);

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/data_and_prior.h"
@@ -33,6 +34,9 @@ struct CombinedInput {
   std::string kind;            ///< prior, board, pairs, or board and pairs
   PriorConsistency agreement;  ///< with the previous inputs; none for the first
   bool used = true;
+  /// Of each of its image pairs, if used: its number in the input, and in the combination, whose
+  /// numbers its messages give.
+  std::vector<std::pair<int, int>> image_pairs;
 };
 
 struct Combination {

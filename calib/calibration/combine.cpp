@@ -82,6 +82,17 @@ void add(JointEvidence& to, const JointEvidence& more) {
   append(to.pairs, more.pairs);
 }
 
+/// The numbers of image pairs, and those that they have at the end of `all`.
+std::vector<std::pair<int, int>> numbers_in(const PairObservations& all,
+                                            const PairObservations& last) {
+  const std::size_t before = all.image_pairs.size() - last.image_pairs.size();
+  std::vector<std::pair<int, int>> numbers;
+  for (std::size_t i = 0; i < last.image_pairs.size(); ++i) {
+    numbers.emplace_back(last.image_pairs[i].number, all.image_pairs[before + i].number);
+  }
+  return numbers;
+}
+
 void check_models(const Rig& first, const CombineInput& input) {
   if (!input.estimate) {
     check_pairs(input.pairs, first, input.name);
@@ -246,6 +257,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
       if (!combined.used) continue;
     }
     add(result.evidence, evidence);
+    combined.image_pairs = numbers_in(result.evidence.pairs, evidence.pairs);
     if (&input == &inputs.back()) break;
     before = result.inputs.size() == 1
                  ? gaussian_prior_of(*input.estimate, input.name)

@@ -68,6 +68,26 @@ std::vector<CombineInput> load(const CombineArguments& options, Session& session
   return inputs;
 }
 
+/// Which image pairs of an input have other numbers in what is said of the combination.
+std::string renumbered_lines(const CombinedInput& input) {
+  std::string text;
+  const auto& numbers = input.image_pairs;
+  for (std::size_t first = 0, end = 0; first < numbers.size(); first = end) {
+    const auto [own, here] = numbers[first];
+    end = first + 1;
+    while (end < numbers.size() && numbers[end].first == numbers[end - 1].first + 1 &&
+           numbers[end].second == numbers[end - 1].second + 1)
+      ++end;
+    if (own == here) continue;
+    const auto [last_own, last_here] = numbers[end - 1];
+    text += first + 1 == end
+                ? fmt::format("image pair {} of {} is numbered {} below\n", own, input.name, here)
+                : fmt::format("image pairs {} to {} of {} are numbered {} to {} below\n", own,
+                              last_own, input.name, here, last_here);
+  }
+  return text;
+}
+
 std::string input_table(const Combination& combination) {
   std::size_t width = 5;
   bool by_f = false;
@@ -99,6 +119,7 @@ std::string input_table(const Combination& combination) {
         "chi² is inflated for few clusters, so p is from an F distribution with 4 (clusters - 1) "
         "denominator degrees of freedom)\n";
   }
+  for (const CombinedInput& input : combination.inputs) text += renumbered_lines(input);
   return text;
 }
 
@@ -113,7 +134,8 @@ Json inputs_json(const Combination& combination) {
                     {"clusters", input.agreement.clusters},
                     {"p_value", input.agreement.p_value},
                     {"in_sigma", input.agreement.in_sigma},
-                    {"words", input.agreement.description}});
+                    {"words", input.agreement.description},
+                    {"image_pairs", input.image_pairs}});
   }
   return json;
 }

@@ -97,6 +97,25 @@ class Combine(unittest.TestCase):
         self.assertIn('largest drift', text)
         self.assertIn('first input', text)
 
+    def test_says_which_numbers_image_pairs_have(self):
+        with open(self.folder / 'b.csv') as file:
+            rows = list(csv.reader(file))
+        with open(self.folder / 'again.csv', 'w') as file:  # numbers of a.csv, one left out
+            csv.writer(file, lineterminator='\n').writerows(
+                [rows[0]] + [[int(n) - 7, *rest] for n, *rest in rows[1:] if n != '9'])
+        own = sorted({int(n) - 7 for n, *_ in rows[1:] if n != '9'})
+        arguments = ['combine', '--prior', PRIOR, 'a.csv', 'again.csv', '-o', 'numbered.json']
+        first, a, again = [i['image_pairs'] for i in self.json_of(*arguments)['inputs']]
+        self.assertEqual(first, [])
+        self.assertEqual([n for n, _ in a], [n for _, n in a])
+        self.assertEqual([n for n, _ in again], own)
+        evidence = json.loads((self.folder / 'numbered.json').read_text())['evidence']['pairs']
+        self.assertEqual([pair['pair'] for pair in evidence], [n for _, n in a + again])
+        said = run(*arguments, folder=self.folder).stdout
+        own, here = next((own, here) for own, here in again if own != here)
+        self.assertRegex(said, rf'(?m)^image pairs? {own} (to \d+ )?of again.csv (is|are) numbered '
+                               rf'{here} (to \d+ )?below$')
+
     def test_without_pairs(self):
         board = ['calibrate', '--left', f'{IMAGES}/left0[1-7].jpg', '--right',
                  f'{IMAGES}/right0[1-7].jpg', '--board', '9x6', '--square-m', '0.025', '--model',

@@ -19,7 +19,6 @@ import random
 import subprocess
 import sys
 
-LOOK_RATE = 0.005  # a further look where an error is more probable, in rows of several
 # Name, protocol, headings a node (0: along the route), looks, stated error rate of the answers.
 ROWS = (
     ("near_path, one look", "near_path", 0, 1, 0.001),
@@ -56,8 +55,8 @@ def study_of(row, world, options):
     name, protocol, headings, looks, rate = row
     return STUDY.format(trials=options.trials, seed=options.seed, protocol=protocol, world=world,
                         headings=headings or '"path"', looks=looks,
-                        rate=LOOK_RATE if looks > 1 else rate,
-                        looking=f"look_error_rate = {LOOK_RATE}" if looks > 1 else "",
+                        rate=max(rate, options.look_rate) if looks > 1 else rate,
+                        looking=f"look_error_rate = {options.look_rate}" if looks > 1 else "",
                         psi_c=options.psi_c, sources=options.sources.replace(",", "\n"))
 
 
@@ -154,6 +153,8 @@ def main():
     parser.add_argument("--psi-c", type=float, default=1)
     parser.add_argument("--sources", default="", help="further settings, as 'edge_loss = 0.2'")
     parser.add_argument("--rows", default="", help="numbers of rows, as 1,3; default: all")
+    parser.add_argument("--look-rate", type=float, default=0.005,
+                        help="a further look where an error is more probable, in rows of several")
     parser.add_argument("--threads", type=int, default=2)
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)

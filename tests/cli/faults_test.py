@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -260,6 +261,16 @@ class Names(FaultCase):
                 self.fails_in_one_line(
                     self.run_in_folder('sample', 'rig.json', '-n', 5, '-q', '-o', name), name, part)
         self.assertTrue(pathlib.Path('/dev/null').is_char_device())
+
+    def test_no_library_is_taken_from_the_current_folder(self):
+        needed = subprocess.run(['ldd', cli_test.PROGRAM], capture_output=True, text=True,
+                                check=True).stdout
+        names = re.findall(r'^\s*(lib\S+) => ', needed, re.MULTILINE)
+        self.assertIn('libsqlite3.so.0', names)
+        for name in names:
+            (self.folder / name).write_bytes(b'')
+        done = self.run_in_folder('--version')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
 
     def test_a_loop_of_links_is_named(self):
         os.symlink('b.csv', self.folder / 'a.csv')

@@ -139,9 +139,9 @@ std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::
             if (!is_closer) step *= 0.5;
           }
           x -= step;
+          if (!is_closer) d = m.distort(x, a + core_parameter_count);
           if (!is_closer || step.norm() < 1e-16 * (1 + x.norm())) break;  // at rounding, or a fold
         }
-        d = m.distort(x, a + core_parameter_count);
         const bool found = (d.x - target).norm() < 1e-10;
         if (!found || d.by_x.determinant() <= 0 || d.by_x.trace() <= 0) return std::nullopt;
         return Eigen::Vector3d(x[0], x[1], 1);

@@ -7,12 +7,13 @@
     bench/localisation_table.py build/release/vernier -o out/table --worlds 201-220 --trials 500
 
 Runs one study a row (and world) and continues those that the folder holds. It prints how many
-answers each state an error of at most the row's rate, and how many do together: at the largest
-threshold at which the mean of what the answers of all worlds state is within it. Of generated
-worlds it prints means over worlds with their 95 % interval by a bootstrap that resamples whole
-worlds. Needs only the Python standard library. Times are CPU times of one thread a query.
+answers each state an error of at most the row's rate, and how many do together: the most, the
+surest first, of which the mean of what they state is within it. Of generated worlds it prints
+means over worlds with their 95 % interval by a bootstrap that resamples whole worlds. Needs only
+the Python standard library. Times are CPU times of one thread a query.
 """
 import argparse
+import csv
 import json
 import pathlib
 import random
@@ -84,7 +85,8 @@ def world_files(program, options):
         if not file.exists():
             size = ["--size-m", options.size_m] if options.size_m else []
             subprocess.run([program, "world", "make", "--kind", options.kind, "--seed", str(seed),
-                            *size, "-o", file, "-q"], check=True)
+                            *size, "-o", file], check=True,
+                       stdout=subprocess.DEVNULL)
         made.append((f"world{seed}", str(file)))
     return made
 
@@ -98,17 +100,34 @@ def mean_and_interval(values, draws=4000):
     return sum(values) / len(values), means[int(0.025 * draws)], means[int(0.975 * draws)]
 
 
-def answers_at(cells, is_meant):
-    """Threshold, answers and wrong ones of all cells, at the largest threshold that is meant."""
-    for at in zip(*(cell["thresholds"] for cell in cells)):  # from unsure to sure
-        answered = sum(of["answered"] for of in at)
-        stated = sum(of["answered"] * of["stated_error"] for of in at)
-        if answered and is_meant(at[0]["max_error_rate"], stated / answered):
-            return at[0]["max_error_rate"], answered, sum(of["wrong"] for of in at)
-    return None
+def stated_answers(program, folders):
+    """Stated error and whether it is right of every best guess, from sure to unsure."""
+    guesses = []
+    for folder in folders:
+        file = folder / "trials.csv"
+        subprocess.run([program, "export", folder, "--trials", "-o", file], check=True,
+                       stdout=subprocess.DEVNULL)
+        with open(file, encoding="utf-8", newline="") as rows:
+            guesses += [(1 - float(row["probability"]), float(row["error_m"] or "inf") <= 1)
+                        for row in csv.DictReader(rows)]
+        file.unlink()
+    return sorted(guesses)
 
 
-def print_row(name, rate, cells):
+def answers_that(guesses, is_meant):
+    """How many answers, and how many of them right, and the last one's stated error: the longest
+    start of the guesses of which `is_meant`, a function of the last and the mean stated error,
+    holds."""
+    most, stated, right = (0, 0, 0.0), 0, 0
+    for answered, (error, is_right) in enumerate(guesses, 1):
+        stated += error
+        right += is_right
+        if is_meant(error, stated / answered):
+            most = answered, right, error
+    return most
+
+
+def print_row(name, rate, cells, guesses):
     trials = sum(cell["trials"] for cell in cells)
     parts = []
     for figure in FIGURES:
@@ -130,13 +149,13 @@ def print_row(name, rate, cells):
         mean, low, high = mean_and_interval(relative)
         parts.append(f"÷ ceiling {mean:.2f}" + (f" [{low:.2f}, {high:.2f}]" if len(cells) > 1 else ""))
     print(f"{name}: {trials} queries\n    " + "; ".join(parts), flush=True)
-    for what, at in (("each", answers_at(cells, lambda most, _: most <= rate)),
-                     ("together", answers_at(cells, lambda _, mean: mean <= rate))):
-        if at:
-            threshold, answered, wrong = at
-            print(f"    answers that {what} state {rate:g} (threshold {threshold:g}): "
-                  f"{100 * answered / trials:.2f} %, {answered - wrong} of {answered} right",
-                  flush=True)
+    for what, is_meant in (("each", lambda last, _: last <= rate),
+                           ("together", lambda _, mean: mean <= rate)):
+        answered, right, last = answers_that(guesses, is_meant)
+        if answered:
+            print(f"    answers that {what} state {rate:g} (threshold {last:.3g}): "
+                  f"{100 * answered / trials:.2f} %, {right} of {answered} right, "
+                  f"{100 * right / answered:.2f} %", flush=True)
 
 
 def main():
@@ -162,10 +181,10 @@ def main():
     chosen = [int(x) for x in options.rows.split(",")] if options.rows else range(1, len(ROWS) + 1)
     for number in chosen:
         row = ROWS[number - 1]
-        cells = [run_study(options.program, study_of(row, file, options),
-                           options.output / f"row{number}_{name}", options.threads)
-                 for name, file in worlds]
-        print_row(row[0], row[4], cells)
+        folders = [options.output / f"row{number}_{name}" for name, _ in worlds]
+        cells = [run_study(options.program, study_of(row, file, options), folder, options.threads)
+                 for (_, file), folder in zip(worlds, folders)]
+        print_row(row[0], row[4], cells, stated_answers(options.program, folders))
 
 
 if __name__ == "__main__":

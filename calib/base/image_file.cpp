@@ -101,6 +101,7 @@ std::string read_image_bytes(const std::filesystem::path& file) {
 }
 
 cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::path& file) {
+  flags |= cv::IMREAD_IGNORE_ORIENTATION;  // the lens belongs to the sensor's pixels
   cv::Mat pixels;
   if (!bytes.empty()) {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

@@ -73,12 +73,10 @@ bool has_all_digits(const jpeg_decompress_struct& decoder) {
 }
 
 void rewrite(Rewriting& r, WrittenBytes& written, const unsigned char* bytes, std::size_t size) {
-  constexpr int exif = JPEG_APP0 + 1;
   if (setjmp(r.at_error) != 0) return;
   jpeg_create_decompress(&r.decoder);
   jpeg_create_compress(&r.encoder);
   jpeg_mem_src(&r.decoder, bytes, static_cast<unsigned long>(size));
-  jpeg_save_markers(&r.decoder, exif, 0xffff);
   jpeg_read_header(&r.decoder, TRUE);
   jvirt_barray_ptr* coefficients = jpeg_read_coefficients(&r.decoder);
   if (!has_all_digits(r.decoder)) return;
@@ -90,9 +88,6 @@ void rewrite(Rewriting& r, WrittenBytes& written, const unsigned char* bytes, st
   r.encoder.dest = &written.manager;
   make_room(&r.encoder);
   jpeg_write_coefficients(&r.encoder, coefficients);
-  for (const auto* marker = r.decoder.marker_list; marker; marker = marker->next) {
-    jpeg_write_marker(&r.encoder, marker->marker, marker->data, marker->data_length);
-  }
   jpeg_finish_compress(&r.encoder);
   r.done = true;
 }

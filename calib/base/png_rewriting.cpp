@@ -56,11 +56,6 @@ void copy_head(png_structp decoder, png_infop from, png_structp encoder, png_inf
   if (png_get_tRNS(decoder, from, &clear, &clear_count, &clear_colour)) {
     png_set_tRNS(encoder, to, clear, clear_count, clear_colour);
   }
-  png_uint_32 exif_size = 0;
-  png_bytep exif = nullptr;
-  if (png_get_eXIf_1(decoder, from, &exif_size, &exif)) {
-    png_set_eXIf_1(encoder, to, exif_size, exif);
-  }
   png_set_rows(encoder, to, png_get_rows(decoder, from));
 }
 

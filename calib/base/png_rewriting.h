@@ -7,8 +7,8 @@
 
 namespace vernier::internal {
 
-/// A PNG file of the same pixels, palette, transparency and Exif data without the other chunks,
-/// such as colour profiles, of which libpng warns. Empty where libpng cannot read the file.
+/// A PNG file of the same pixels, palette and transparency without the other chunks, such as colour
+/// profiles, of which libpng warns. Empty where libpng cannot read the file.
 std::string rewritten_png(std::string_view bytes);
 
 }  // namespace vernier::internal

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 #include "calib/base/shown_text.h"
 #include "calib/base/utf8.h"
@@ -60,11 +61,15 @@ class YamlParser {
       read(next);
       if (next.event.type == YAML_STREAM_END_EVENT) return root;
       if (next.event.type != YAML_DOCUMENT_START_EVENT) continue;
-      if (found) fail(next.line(), "a second document begins here", "give one document a file");
-      found = true;
       YamlEvent first;
       read(first);
-      root = value(first, 0);
+      YamlValue read_value = value(first, 0);
+      if (!found) {
+        root = std::move(read_value);
+      } else if (read_value.kind != YamlValue::Kind::null) {
+        fail(next.line(), "a second document begins here", "give one document a file");
+      }
+      found = true;
     }
   }
 

@@ -39,7 +39,8 @@ struct YamlValue::Entry {
   YamlValue value;
 };
 
-/// Parses one YAML document. OpenCV's first line (%YAML:1.0, which is not valid YAML) is accepted.
+/// Parses one YAML document, which empty ones may follow: a line --- ends each message of ROS's
+/// "topic echo". OpenCV's first line (%YAML:1.0, which is not valid YAML) is accepted.
 /// Throws Error("place:line") if the text is malformed, not UTF-8 or beyond a limit, has a key
 /// twice in one map, holds a second document, a %TAG directive, or an alias (*name), which could
 /// stand for any number of values.

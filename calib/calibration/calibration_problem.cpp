@@ -26,10 +26,25 @@ void check_numbers(const CalibrationOptions& options) {
   }
 }
 
+namespace {
+
+void refuse_held_and_known(const CalibrationOptions& options) {
+  for (const HeldParameter& held : options.held) {
+    for (const ParameterPrior& known : options.known) {
+      if (known.name != held.name) continue;
+      throw Error("held parameter " + held.name, "is also given a value with a standard deviation",
+                  "hold it (--hold), or say how well it is known (--know)");
+    }
+  }
+}
+
+}  // namespace
+
 ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
   ReprojectionProblem problem;
   if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
   problem.held = held_mask(rig, options.held);
+  refuse_held_and_known(options);
   problem.warp = options.warp;
   problem.max_iterations = options.max_iterations;
   if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));

@@ -28,6 +28,9 @@
 namespace vernier::internal {
 namespace {
 
+/// Below this a prior and the rest are said to disagree.
+constexpr double least_p = 1e-4;
+
 /// The ninth of the image that contains a position, `x` and `y` from 0 to 1: "top left", "bottom",
 /// ….
 std::string ninth_of(double x, double y) {
@@ -140,21 +143,51 @@ std::optional<std::string> noise_warning(double chi2, double dof, double pixel_s
                 : ", so the noise is overstated");
 }
 
+namespace {
+
+/// A prior beside values that are held far from what it states.
+std::optional<std::string> held_conflict_warning(const RigPrior& prior,
+                                                 const PriorOffset& at,
+                                                 const std::vector<Eigen::Index>& held,
+                                                 const std::vector<std::string>& names) {
+  if (held.empty()) return {};
+  std::vector<Eigen::Index> informed;
+  for (Eigen::Index i = 0; i < prior.information.rows(); ++i) {
+    if (prior.information(i, i) > 0) informed.push_back(i);
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(at.delta.size(), at.delta.size());
+  covariance(informed, informed) = prior.information(informed, informed).inverse();
+  const Eigen::MatrixXd of_held = covariance(held, held);
+  const Eigen::VectorXd offset = at.delta(held);
+  const double p = chi_squared_survival(offset.dot(of_held.inverse() * offset),
+                                        static_cast<double>(held.size()));
+  if (!(p < least_p)) return {};
+  Eigen::Index most = 0;
+  const double sigmas = (offset.array().abs() / of_held.diagonal().array().sqrt()).maxCoeff(&most);
+  return fmt::format(
+      "what is held and the prior disagree: {} is held {:.1f} of its prior's standard deviations "
+      "away (p = {:.1e}); check the value, or leave it free",
+      names[held[most]], sigmas, p);
+}
+
+}  // namespace
+
 std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
                                                   const Rig& rig,
                                                   const Eigen::MatrixXd& bound,
                                                   const Eigen::MatrixXd& honest,
                                                   int clusters) {
-  constexpr double min_p = 1e-4;
-  std::vector<Eigen::Index> known;
+  std::vector<Eigen::Index> known, held;
   for (Eigen::Index i = 0; i < bound.rows(); ++i) {
-    if (prior.information(i, i) > 0 && bound(i, i) > 0) known.push_back(i);
+    if (prior.information(i, i) > 0) (bound(i, i) > 0 ? known : held).push_back(i);
   }
+  const std::vector<std::string> all_names = parameter_names(rig);
+  const PriorOffset at = prior_offset(prior, rig);
+  if (const auto conflict = held_conflict_warning(prior, at, held, all_names)) return conflict;
   if (known.empty()) return {};
   std::vector<std::string> names;
   names.reserve(known.size());
-  for (const Eigen::Index i : known) names.push_back(parameter_names(rig)[i]);
-  const PriorOffset at = prior_offset(prior, rig);
+  for (const Eigen::Index i : known) names.push_back(all_names[i]);
   const Eigen::VectorXd offset = at.delta(known);
   const auto in_prior = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
     return (at.by_rig * C * at.by_rig.transpose())(known, known);
@@ -168,7 +201,7 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   } catch (const Error&) {  // a prior that cannot be inverted in double precision is not checked
     return {};
   }
-  if (agreement.dof == 0 || agreement.p_value >= min_p) return {};
+  if (agreement.dof == 0 || agreement.p_value >= least_p) return {};
   Eigen::Index most = 0;
   const double sigmas = (offset.array() / before.diagonal().array().sqrt()).abs().maxCoeff(&most);
   return fmt::format(

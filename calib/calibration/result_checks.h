@@ -26,8 +26,8 @@ inline constexpr double largest_scaled_condition = 1e11;
 /// Checks that the views determine the rig's free parameters. `bound` is over these.
 std::optional<std::string> ill_conditioning_warning(const Covariance& bound, const Rig& rig);
 
-/// Checks that data and prior do not contradict each other, at p < 1e-4
-/// (calib/estimate/prior_consistency.h). `bound` and `honest` are over all parameters of the rig,
+/// Checks that neither what is held nor the data contradicts the prior, at p < 1e-4; data by
+/// calib/estimate/prior_consistency.h. `bound` and `honest` are over all parameters of the rig,
 /// zero for held ones; `clusters` as there. Names the parameter that moved most in the prior's
 /// standard deviations.
 std::optional<std::string> prior_conflict_warning(const RigPrior& prior,

@@ -9,6 +9,7 @@
 #include "calib/camera.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
+#include "calib/rig_prior.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -36,6 +37,20 @@ TEST(NoiseWarning, HasTwoTailsAndDoesNotDependOnTheNumberOfCorners) {
   EXPECT_TRUE(noise_warning(8.6e19, 2714, 1e-9));
   EXPECT_FALSE(noise_warning(1e-20, 2714, 0.2));  // computed corners have no noise to doubt
   EXPECT_TRUE(noise_warning(2714 * 1e-4, 2714, 0.2));
+}
+
+TEST(PriorConflictWarning, NamesWhatIsHeldFarFromThePrior) {
+  const Rig rig = test::stereo_rig(OpenCv5{});
+  const auto places = static_cast<Eigen::Index>(parameter_names(rig).size());
+  const Eigen::MatrixXd all_held = Eigen::MatrixXd::Zero(places, places);
+  const double tx_m = rig.T_camera_first[1].t.x();
+  const auto said = [&](double away_m) {
+    const RigPrior prior = rig_prior(rig, {{"right.tx_m", tx_m + away_m, 0.001}});
+    return prior_conflict_warning(prior, rig, all_held, all_held, 20).value_or("");
+  };
+  EXPECT_EQ(said(0.0038), "");  // p = 1.4e-4
+  EXPECT_EQ(said(0.01).find("what is held and the prior disagree: right.tx_m is held 10.0"), 0u)
+      << said(0.01);
 }
 
 TEST(InversionWarnings, NameTheCameraAndTheRegion) {

@@ -35,6 +35,10 @@ BoardObservations read_corners(const std::filesystem::path& file,
 /// 1/2^level in mrcal.
 int count_coarse_corners(const std::filesystem::path& file);
 
+/// Throws Error for the name of an image that a corners file cannot hold: one with blanks, or that
+/// begins with '#'.
+void check_corners_image(const std::string& image);
+
 /// Writes camera by camera, so that reading numbers them in the same way; a view without corners is
 /// one line of dashes. Throws Error for an image whose name would not read back: one that is empty,
 /// contains blanks, begins with '#', has no number, or does not match its camera.

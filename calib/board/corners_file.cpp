@@ -46,15 +46,12 @@ class CameraOrder {
 };
 
 /// Throws Error if read_corners would assign the image's name to another view.
-void check_image_name(const BoardView& view, CameraOrder& cameras) {
+void check_image_view(const BoardView& view, CameraOrder& cameras) {
   if (view.image.empty()) {
     throw Error(fmt::format("frame {}, camera {}", view.frame, view.camera),
                 "its image has no name", "corners files need one");
   }
-  if (view.image.find_first_of(" \t\r\n") != std::string::npos || view.image.front() == '#') {
-    throw Error(view.image, "a corners file cannot hold a name with blanks or a leading #",
-                "rename the image or its folder");
-  }
+  check_corners_image(view.image);
   const int camera = cameras.index(parse_image_name(view.image).camera);
   if (camera != view.camera) {
     throw Error(
@@ -177,6 +174,12 @@ int count_coarse_corners(const std::filesystem::path& file) {
   return count;
 }
 
+void check_corners_image(const std::string& image) {
+  if (image.find_first_of(" \t\r\n") == std::string::npos && !image.starts_with('#')) return;
+  throw Error(image, "a corners file cannot hold a name with blanks or a leading #",
+              "rename the image or its folder");
+}
+
 void write_corners(const BoardObservations& observations,
                    const BoardTarget& target,
                    const std::filesystem::path& file) {
@@ -189,7 +192,7 @@ void write_corners(const BoardObservations& observations,
   CameraOrder cameras;
   for (const BoardView* each : views) {
     const BoardView& view = *each;
-    check_image_name(view, cameras);
+    check_image_view(view, cameras);
     if (view.ids.empty()) {
       text += fmt::format("{} - - -\n", view.image);
       continue;

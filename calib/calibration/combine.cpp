@@ -169,7 +169,7 @@ void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) 
 }
 
 /// Collects the warnings of the inputs, of the scene of all pairs, and about excluded inputs.
-void add_warnings(const std::vector<CombineInput>& inputs, Combination& combination) {
+void add_warnings(const std::vector<CombineInput>& inputs, double min_p, Combination& combination) {
   CalibrationSummary& summary = *combination.joint.estimate.calibration;
   warn_of_priors(combination.evidence, summary);
   const bool first_is_prior = kind_of(inputs.front()) == "prior";
@@ -201,9 +201,10 @@ void add_warnings(const std::vector<CombineInput>& inputs, Combination& combinat
           summary.trust_warnings.push_back(input.name + ": " + trust_warning);
       }
     }
-    if (input.used) {
+    const bool is_compared = i > 0 && input.agreement.dof > 0;
+    if (input.used && !(is_compared && input.agreement.p_value < min_p)) {
       constexpr double low_p = 0.01;
-      if (i > 0 && input.agreement.p_value < low_p) {
+      if (is_compared && input.agreement.p_value < low_p) {
         summary.warnings.push_back(
             fmt::format("{} is barely consistent with the previous inputs (p {:.1g})", input.name,
                         input.agreement.p_value));
@@ -215,10 +216,12 @@ void add_warnings(const std::vector<CombineInput>& inputs, Combination& combinat
                                        " was excluded: " + input.agreement.description);
       continue;
     }
-    summary.trust_warnings.push_back(fmt::format(
-        "{} is inconsistent with the previous inputs (chi² {:.1f} for {}, p {:.1g}) and was "
-        "excluded: the rig has changed, or one of them understates its uncertainty",
-        input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
+    summary.trust_warnings.push_back(
+        fmt::format("{} is inconsistent with the previous inputs (chi² {:.1f} for {}, p {:.1g}) "
+                    "and was {}: the "
+                    "rig has changed, or one of them understates its uncertainty",
+                    input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value,
+                    input.used ? "kept" : "excluded"));
   }
 }
 
@@ -264,7 +267,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
                  : gaussian_prior_of(calibrate_jointly(result.evidence, before->rig, joint));
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
-  add_warnings(inputs, result);
+  add_warnings(inputs, options.min_p, result);
   const RigEstimate& estimate = result.joint.estimate;
   CalibrationSummary& summary = *result.joint.estimate.calibration;
   const auto folds = inversion_warnings(estimate.rig);

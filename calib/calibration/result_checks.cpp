@@ -78,7 +78,8 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
       "the distortion of camera \"{}\" cannot be inverted in {:.{}f} % of its image ({}; from "
       "{:.0f} "
       "px of its principal point on): pixels there have no ray, and functions that need one "
-      "fail; use a model with fewer distortion parameters, or add views at the image's border",
+      "fail; use a model with fewer distortion parameters, fisheye4 for a wide lens, or add views "
+      "at the image's border",
       camera.name, percent, percent < 10 ? 1 : 0, fmt::join(regions, ", "), least_px);
 }
 
@@ -155,8 +156,9 @@ std::optional<std::string> held_conflict_warning(const RigPrior& prior,
   for (Eigen::Index i = 0; i < prior.information.rows(); ++i) {
     if (prior.information(i, i) > 0) informed.push_back(i);
   }
+  const Eigen::MatrixXd of_informed = prior.information(informed, informed).inverse();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(at.delta.size(), at.delta.size());
-  covariance(informed, informed) = prior.information(informed, informed).inverse();
+  covariance(informed, informed) = of_informed;
   const Eigen::MatrixXd of_held = covariance(held, held);
   const Eigen::VectorXd offset = at.delta(held);
   const double p = chi_squared_survival(offset.dot(of_held.inverse() * offset),

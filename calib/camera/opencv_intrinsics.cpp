@@ -163,11 +163,11 @@ Camera camera_from_opencv(const OpenCvIntrinsics& intrinsics,
   }
   const int count = distortion_count(model);
   if (const auto beyond = first_beyond(intrinsics.coefficients, static_cast<std::size_t>(count))) {
-    throw Error(
-        place,
-        fmt::format("{} = {} is not in the model {}", coefficient_name(intrinsics.fisheye, *beyond),
-                    intrinsics.coefficients[*beyond], model_name(model)),
-        wanted ? "choose a larger model or none" : "no supported model includes it");
+    throw Error(place,
+                fmt::format("the coefficient {} = {} of its distortion is not in the model {}",
+                            coefficient_name(intrinsics.fisheye, *beyond),
+                            intrinsics.coefficients[*beyond], model_name(model)),
+                wanted ? "choose a larger model or none" : "no supported model includes it");
   }
   Camera camera;
   camera.name.clear();

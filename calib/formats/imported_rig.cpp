@@ -23,17 +23,18 @@ const std::string& file_stem(const Camera& camera) {
   }
   if (!plain) {
     throw Error(fmt::format("camera \"{}\"", name), "its name is not valid as a file name",
-                "rename it");
+                "rename the cameras, as convert --names left,right does");
   }
   return name;
 }
 
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place) {
   const double deviation = (M.transpose() * M - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(deviation <= 1e-6)) {
+  constexpr double most_rounding = 5e-6;  // of entries with six decimals
+  if (!(deviation <= most_rounding)) {
     throw Error(place,
                 fmt::format("is not a rotation: it deviates from orthonormal by {:.2g}", deviation),
-                "correct it; 1e-6 is allowed");
+                fmt::format("correct it; {:g} is allowed", most_rounding));
   }
   if (M.determinant() < 0) {
     throw Error(place, "is a reflection, not a rotation: its determinant is -1", "correct it");

@@ -65,7 +65,7 @@ std::string camera_text(const Camera& camera, const std::string& others) {
       : in.fisheye ? "equidistant"
                    : "radtan",
       yaml_list(k), camera.size_px[0], camera.size_px[1],
-      yaml_text("/" + file_stem(camera) + "/image_raw"));
+      yaml_text("/" + camera.name + "/image_raw"));
 }
 
 std::string step_text(const Pose& T) {

@@ -210,6 +210,23 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   return {text + "; use --model " + best->name};
 }
 
+/// The minimum of a richer model from a start of its own: that of the model in use may lie where
+/// the richer one folds the image. Throws Error if the views do not determine it.
+BoardState fitted_afresh(const BoardObservations& observations,
+                         const std::vector<CameraModel>& models,
+                         const CalibrationOptions& options,
+                         const ReprojectionProblem& problem) {
+  CalibrationOptions how = options;
+  how.models = models;
+  how.reject_outliers = how.check_input = false;
+  how.board_shape = how.motion = how.baseline_motion = how.board_aspect = false;
+  const RigEstimate estimate = calibrate(observations, how);
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  return determined_minimum(
+      observations, {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m},
+      problem);
+}
+
 /// A richer model fitted to all views and to those left by each group. Throws Error if they do not
 /// determine it.
 ModelScore score_of(const std::vector<CameraModel>& richer,
@@ -222,7 +239,12 @@ ModelScore score_of(const std::vector<CameraModel>& richer,
   start.rig = in_models(state.rig, richer);
   const ReprojectionProblem problem =
       problem_for(options, start.rig, estimate.calibration->pixel_sigma_px);
-  const BoardState fitted = determined_minimum(observations, start, problem);
+  BoardState fitted;
+  try {
+    fitted = determined_minimum(observations, start, problem);
+  } catch (const Error&) {
+    fitted = fitted_afresh(observations, richer, options, problem);
+  }
   const HeldOut errors = held_out_errors(observations, fitted, problem);
   ModelScore score;
   score.models = richer;
@@ -278,10 +300,12 @@ ModelComparison compare_models(const RigEstimate& estimate,
   for (const std::vector<CameraModel>& richer : models) {
     try {
       comparison.richer.push_back(score_of(richer, estimate, options, observations, state, in_use));
-    } catch (const Error&) {
-      break;  // the views do not determine this model, nor a richer one
+    } catch (const Error& error) {  // the views do not determine this model, nor a richer one
+      comparison.left_out = name_of(richer) + ": " + error.what();
+      break;
     }
   }
+  if (comparison.richer.empty()) comparison.not_compared = comparison.left_out;
   comparison.warnings = warnings_of(comparison);
   return comparison;
 }

@@ -36,6 +36,7 @@ struct ModelComparison {
   std::vector<ModelScore> richer;     ///< the next two, if the views determine them
   int frames = 0;                     ///< compared
   std::vector<std::string> warnings;  ///< with remedies
+  std::string left_out;               ///< the next model without a score, and why
   std::string not_compared;           ///< why there are no scores
 };
 

@@ -89,18 +89,33 @@ BoardObservations checked(const std::string& file, BoardObservations observation
   return observations;
 }
 
+/// Sizes for more cameras than there are.
+void check_sizes(const BoardInput& input, const BoardObservations& observations) {
+  int cameras = 0;
+  for (const BoardView& view : observations.views) cameras = std::max(cameras, view.camera + 1);
+  const auto sizes = static_cast<int>(size_of(input).size());
+  if (sizes <= std::max(cameras, 1)) return;
+  throw Error(
+      "--size " + input.size,
+      fmt::format("gives {} sizes, and there are corners of {}", sizes, counted(cameras, "camera")),
+      "give one size for all cameras, or one for each");
+}
+
 BoardObservations from_observations(const BoardInput& input) {
   const std::string why = "the --observations file contains the board's points";
   refuse(input, std::array{"--board", "--target", "--square-m"}, why);
   refuse(input, charuco_options, why);
   refuse(input, tag_options, why);
   refuse(input, tag_detection_options, why);
-  return checked(input.observations, read_observations(input.observations, size_of(input)));
+  BoardObservations observations = read_observations(input.observations, size_of(input));
+  check_sizes(input, observations);
+  return checked(input.observations, std::move(observations));
 }
 
 BoardObservations from_corners(const BoardInput& input, Session& session) {
-  BoardObservations observations =
-      checked(input.corners, read_corners(input.corners, target_of(input), size_of(input)));
+  BoardObservations observations = read_corners(input.corners, target_of(input), size_of(input));
+  check_sizes(input, observations);
+  observations = checked(input.corners, std::move(observations));
   if (const int coarse = count_coarse_corners(input.corners)) {
     session.warn(
         fmt::format("{}: {} corners have a level above 0 (detected in a reduced image) but get the "

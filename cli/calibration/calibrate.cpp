@@ -53,6 +53,7 @@ Json comparison_json(const ModelComparison& comparison) {
   Json json{{"frames", comparison.frames}, {"in_use", score(comparison.in_use)}};
   json["richer"] = Json::array();
   for (const ModelScore& s : comparison.richer) json["richer"].push_back(score(s));
+  if (!comparison.left_out.empty()) json["left_out"] = comparison.left_out;
   return json;
 }
 
@@ -69,6 +70,7 @@ std::string comparison_table(const ModelComparison& comparison) {
   };
   line(comparison.in_use);
   for (const ModelScore& s : comparison.richer) line(s);
+  if (!comparison.left_out.empty()) text += "not compared: " + comparison.left_out + "\n";
   return text;
 }
 

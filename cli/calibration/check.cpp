@@ -222,7 +222,8 @@ void run(const CheckArguments& options, Session& session) {
     json[name] = part.json;
     if (!part.reason.empty()) {
       json[name + "_reason"] = part.reason;
-      session.warn(part.text.substr(0, part.text.find('\n')));
+      const bool is_asked_for = part.reason.starts_with("--");
+      if (!is_asked_for) session.warn(part.text.substr(0, part.text.find('\n')));
     } else {
       text += part.text;
     }

@@ -56,7 +56,7 @@ bool names_a_folder(const std::filesystem::path& output) {
 }  // namespace
 
 RigFormat written_format(const std::string& text) {
-  const RigFormat format = rig_format(text, "--to");
+  const RigFormat format = rig_format(text, "--to", written_rig_format_names);
   if (format == RigFormat::asl || format == RigFormat::kitti) {
     throw Error("--to", fmt::format("{} is only read", text),
                 std::string("supported: ") + written_rig_format_names);

@@ -7,6 +7,7 @@
 #include "calib/board_detection.h"
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
+#include "calib/observations_file.h"
 #include "cli/calibration/board_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -44,6 +45,9 @@ void run(const DetectArguments& options, Session& session) {
   const BoardTarget target = shape_of(options.input);
   check_target(target);
   check_output_is_not_input(files_named(options.input), options.output);
+  for (const std::string& pattern : image_patterns(options.input)) {
+    for (const auto& file : matching_files(pattern)) check_corners_image(file.string());
+  }
   const ImageDetections found = detect_images(image_patterns(options.input), target);
   write_corners(found, target, options.output);
   Json used = Json::array(), refused = Json::array();

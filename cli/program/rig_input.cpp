@@ -149,12 +149,13 @@ std::string_view name(RigFormat format) {
   return names[static_cast<std::size_t>(format)];
 }
 
-RigFormat rig_format(const std::string& text, const std::string& option) {
+RigFormat rig_format(const std::string& text,
+                     const std::string& option,
+                     const std::string& supported) {
   for (const RigFormat format : formats) {
     if (name(format) == text) return format;
   }
-  throw Error(option, "unknown format " + in_quotes(text),
-              std::string("supported: ") + rig_format_names);
+  throw Error(option, "unknown format " + in_quotes(text), "supported: " + supported);
 }
 
 RigFormat input_format(const fs::path& input) {

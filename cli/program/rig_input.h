@@ -23,8 +23,10 @@ enum class RigFormat { vernier, mrcal, opencv, kalibr, ros, colmap, asl, kitti }
 inline constexpr const char* rig_format_names =
     "vernier, mrcal, opencv, kalibr, ros, colmap, asl, kitti";
 std::string_view name(RigFormat format);
-/// Throws Error (`option`) for a name that is none of the above.
-RigFormat rig_format(const std::string& name, const std::string& option);
+/// Throws Error (`option`), which lists `supported`, for a name that is none of the above.
+RigFormat rig_format(const std::string& name,
+                     const std::string& option,
+                     const std::string& supported = rig_format_names);
 
 /// The format of an input from its name and, for .yaml, .yml and .txt, its content. Throws Error if
 /// undetermined.

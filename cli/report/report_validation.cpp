@@ -48,11 +48,8 @@ void add_models(const RigEstimate& estimate, const CalibrationOptions& options, 
     json["notes"].push_back("Lens models were not compared: " + comparison.not_compared + ".");
     return;
   }
-  if (comparison.richer.empty()) {
-    json["notes"].push_back(
-        "No richer lens model was compared: none exists, the views do not determine one, or there "
-        "are fewer than six frames.");
-    return;
+  if (!comparison.left_out.empty()) {
+    json["notes"].push_back("A lens model was not compared: " + comparison.left_out + ".");
   }
   json["models"] = models_json(comparison);
   for (const std::string& warning : comparison.warnings) json["warnings"].push_back(warning);

@@ -158,11 +158,13 @@ TEST(Convert, SmallestModelThatHoldsTheCoefficients) {
   EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0});
             }),
-            "f: s3 = 2 is not in the model opencv8; no supported model includes it");
+            "f: the coefficient s3 = 2 of its distortion is not in the model opencv8; no supported "
+            "model includes it");
   EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.5});
             }),
-            "f: ty = -0.5 is not in the model opencv8; no supported model includes it");
+            "f: the coefficient ty = -0.5 of its distortion is not in the model opencv8; no "
+            "supported model includes it");
 }
 
 TEST(Convert, AModelAskedForMustHoldTheCoefficients) {
@@ -173,7 +175,8 @@ TEST(Convert, AModelAskedForMustHoldTheCoefficients) {
   EXPECT_EQ(error_message([&] {
               camera_from_opencv(in, {640, 480}, "f", Radial1{});
             }),
-            "f: p1 = 0.001 is not in the model radial1; choose a larger model or none");
+            "f: the coefficient p1 = 0.001 of its distortion is not in the model radial1; choose a "
+            "larger model or none");
   EXPECT_EQ(error_message([&] {
               camera_from_opencv(in, {640, 480}, "f", Fisheye4{});
             }),

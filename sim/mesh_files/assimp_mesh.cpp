@@ -37,6 +37,13 @@ bool is_turned(const std::string& ending) {
   return std::find(metric.begin(), metric.end(), ending) != metric.end();
 }
 
+/// assimp takes what is left of an IFC file that was cut short: its last lines place the parts.
+void check_ifc_is_whole(const std::filesystem::path& file) {
+  if (vernier::internal::read_whole(file).rfind("END-ISO-10303-21") != std::string::npos) return;
+  throw Error(file.string(), "is cut short: no line END-ISO-10303-21 ends it",
+              "copy or export it again");
+}
+
 /// Metres of a unit of the coordinates that assimp gives of an IFC file: it applies prefixes of
 /// metres, and takes a foot for a metre.
 std::optional<double> ifc_unit_m(const std::filesystem::path& file) {
@@ -184,6 +191,7 @@ Mesh read_with_assimp(const std::filesystem::path& file,
     throw Error(file.string(), "is of no known format",
                 "convert it to OBJ, PLY, DAE, IFC, glTF or a list of lines (.txt)");
   }
+  if (ending == ".ifc") check_ifc_is_whole(file);
   // Damaged files make assimp 5.2 crash (IFC) and hang (DAE).
   constexpr double least_s = 30, s_per_byte = 1e-5;
   std::error_code fault;

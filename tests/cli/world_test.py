@@ -182,7 +182,7 @@ class World(verb_calls.ProgramCase):
                 ('b.txt', '0 0 0 1 0 nan\n', 'is not finite'),
                 ('c.txt', '', 'holds no triangles and no lines'),
                 ('a.docx', 'x', 'a.docx: '),
-                ('a.ifc', 'ISO-10303-21;\n', 'a.ifc: '),
+                ('a.ifc', 'ISO-10303-21;\n', 'a.ifc: is cut short'),
                 ('a.obj', 'v 0 0 0\nf 1 2 3\n', 'a.obj: ')):
             with self.subTest(name):
                 (self.folder / name).write_text(text)

@@ -154,7 +154,9 @@ TEST(MeshFile, RefusesWhatItCannotRead) {
   EXPECT_NE(error_message([&] { read_mesh(folder.path()); }).find("holds no track_N.txt"),
             std::string::npos);
   EXPECT_NE(mesh_file_message("a.docx", "text"), "");
-  EXPECT_NE(mesh_file_message("a.ifc", "ISO-10303-21;\nHEADER;\n"), "");
+  if (assimp_version().empty()) GTEST_SKIP() << "built without assimp";
+  EXPECT_EQ(mesh_file_message("a.ifc", "ISO-10303-21;\nHEADER;\n"),
+            "a.ifc: is cut short: no line END-ISO-10303-21 ends it; copy or export it again");
 }
 
 // What a library does to itself does not reach its caller.

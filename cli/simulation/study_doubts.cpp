@@ -122,10 +122,11 @@ void add_understated_errors(const StudyResults& results, StudyDoubts& found) {
                     wrong, answers, cell.cell.label, 100 * stated);
   }
   if (cells == 0) return;
-  found.warnings.push_back(fmt::format(
-      "{}{}: what it states does not hold there, as in a building that repeats or for a rig that "
-      "is far off",
-      first, cells > 1 ? fmt::format(", and so in {} more cells", cells - 1) : ""));
+  found.warnings.push_back(
+      fmt::format("{}{}: what it states does not hold there, as in a building that repeats or is "
+                  "bare, or for a "
+                  "rig that is far off",
+                  first, cells > 1 ? fmt::format(", and so in {} more cells", cells - 1) : ""));
 }
 
 /// Says which cells have not a single calibration to tell: a reason not to trust them.

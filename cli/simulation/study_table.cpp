@@ -252,9 +252,10 @@ std::string calibrations_text(const StudyResults& results) {
   for (const CellResult& cell : results.cells) {
     if (!cell.calibrations) continue;
     const CalibrationRecord& c = *cell.calibrations;
-    std::string line = fmt::format("calibrations from {}: {} of {} failed, {} more are doubted",
-                                   counted(cell.cell.told.calibration->views, "view"), c.failed,
-                                   c.calibrations, c.doubtful);
+    const CalibrationSettings& how = *cell.cell.told.calibration;
+    std::string line =
+        fmt::format("calibrations from {}: {} of {} failed, {} more are doubted",
+                    counted(how.views, "view"), c.failed, c.calibrations, c.doubtful);
     if (std::isfinite(c.depth_error_m)) {
       line += fmt::format("; depth at {:g} m at psi_c = 1: rms error {:.3g} m, stated {:.3g} m",
                           c.range_m, c.depth_error_m, c.depth_sd_m);

@@ -129,7 +129,7 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
     between = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a, b, query); };
   }
   const std::vector<WeightedMode> modes =
-      pose_posterior(query.compared, observations_of(query), map_.nodes.size(), posterior, between);
+      pose_posterior(query.compared, size_of(query), map_.nodes.size(), posterior, between);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.

@@ -148,7 +148,7 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
 
 /// Whether no pose that was compared explains the looks.
 bool LineLocaliser::fits_poorly(const Query& query) const {
-  const double least = -poor_misfit * observations_of(query);
+  const double least = -poor_misfit * size_of(query).observations;
   return std::none_of(query.compared.begin(), query.compared.end(),
                       [least](const Hypothesis& h) { return h.score > least; });
 }
@@ -186,9 +186,12 @@ int LineLocaliser::ranked_alike(const Pose2D& pose,
   return static_cast<int>(most);
 }
 
-double LineLocaliser::observations_of(const Query& query) {
-  double sum = 0;
-  for (const Seen& look : query.looks) sum += look.view.observations;
+ViewSize LineLocaliser::size_of(const Query& query) {
+  ViewSize sum;
+  for (const Seen& look : query.looks) {
+    sum.observations += look.view.observations;
+    sum.lines += look.view.lines.size();
+  }
   return sum;
 }
 

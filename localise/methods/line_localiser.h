@@ -80,7 +80,7 @@ class LineLocaliser : public Localiser {
                        Query& query) const;
   void compare_rivals(const Pose2D& pose, Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Starts starts, Query& query) const;
-  static double observations_of(const Query& query);
+  static ViewSize size_of(const Query& query);
   /// Where an error is more probable, a further look is wanted.
   double look_error_rate() const {
     return options_.look_error_rate.value_or(options_.max_error_rate);

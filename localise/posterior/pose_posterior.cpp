@@ -95,7 +95,7 @@ double weight_against(const Evidence& evidence, double share, const PosteriorOpt
 }
 
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
-                                         double observations,
+                                         const ViewSize& view,
                                          std::size_t nodes,
                                          const PosteriorOptions& options,
                                          const EvidenceBetween& evidence_between) {
@@ -113,15 +113,17 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   }
   if (modes.empty()) return modes;
   const double best = modes[0].best.score;
-  const double misfit = std::max(0.0, -best / std::max(1.0, observations));
+  const double misfit = std::max(0.0, -best / std::max(1.0, view.observations));
   const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
-  const double seen = std::max(0.0, observations);
+  const double seen = std::max(0.0, view.observations);
   const auto size = static_cast<double>(nodes);
   const double root = std::sqrt(seen / options.usual_observations);
   const double lost = std::pow(std::clamp(size / options.usual_nodes, 1.0, options.most_times), 2) *
                       std::exp(options.steepness * (misfit - options.lost_misfit) * root);
   const double thin = options.thin * std::exp(-seen / options.thin_observations);
-  double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown);
+  const double few =
+      std::pow(options.told_by_a_line, options.few_lines - static_cast<double>(view.lines));
+  double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown) + few;
   std::vector<double> weights = weights_of(modes, share, options, evidence_between);
   for (double& weight : weights) weight = std::pow(weight, options.tempering);
   total = std::accumulate(weights.begin(), weights.end(), total);

@@ -145,10 +145,10 @@ void StudyReader::check_sweep_key(const toml::table& root,
        key == "rig.truth" || key == "calibration.observations")) {
     const auto meant = misspelt_word(head, {sections.begin(), sections.end()});
     fail(node, "'" + shortened(key) + "' cannot be swept",
-         meant
-             ? "did you mean '" + *meant + shortened(key.substr(head.size())) + "'?"
-             : "sweep a key of [sources], [corners], [camera], [map], [localiser], [calibration], "
-               "[system] or [parameters], study.protocol, study.seed, world.file or rig.file");
+         meant ? "did you mean '" + *meant + shortened(key.substr(head.size())) + "'?"
+               : "sweep a key of [sources], [corners], [camera], [map], [localiser], [histograms], "
+                 "[calibration], [system] or [parameters], study.protocol, study.seed, world.file, "
+                 "rig.file or rig.error");
   }
   if (key.find('.') == std::string::npos || node.is_table()) {
     fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),

@@ -26,8 +26,8 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& setting
 inline constexpr int results_version = 2;
 
 /// The same of the method `lines` alone, also where a default changes, for those are not part of a
-/// key. 8: the weights of a posterior are tempered.
-inline constexpr int lines_version = 8;
+/// key. 9: views of few lines are not believed.
+inline constexpr int lines_version = 9;
 
 /// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
 /// of another size use other maps per trial and are therefore stored under another key.

@@ -160,8 +160,10 @@ std::vector<const toml::table*> TomlReader::tables(const toml::table& root, cons
 }
 
 std::int64_t TomlReader::integer(const toml::node& node, const std::string& what) const {
-  if (!node.is_integer())
-    fail(node, what + " is not a whole number", "write it without a decimal point");
+  if (!node.is_integer()) {
+    fail(node, what + " is not a whole number",
+         node.is_string() ? "write it without quotes" : "write it without a decimal point");
+  }
   return node.as_integer()->get();
 }
 

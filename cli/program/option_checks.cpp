@@ -56,11 +56,17 @@ std::string finite(const std::string& text) {
   return to_finite(text) ? "" : in_quotes(text) + " is not a finite number";
 }
 
-std::string png_name(const std::string& text) {
-  return std::filesystem::path(text).extension() == ".png"
-             ? ""
-             : in_quotes(text) + " does not end in .png";
+namespace {
+
+std::string name_ending_in(const char* ending, const std::string& text) {
+  if (std::filesystem::path(text).extension() == ending) return "";
+  return in_quotes(text) + " does not end in " + ending;
 }
+
+}  // namespace
+
+std::string png_name(const std::string& text) { return name_ending_in(".png", text); }
+std::string svg_name(const std::string& text) { return name_ending_in(".svg", text); }
 
 std::string not_empty(const std::string& text) { return text.empty() ? "is empty" : ""; }
 

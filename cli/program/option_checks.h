@@ -18,8 +18,9 @@ std::string finite_and_not_negative(const std::string& text);
 std::string finite_and_positive(const std::string& text);
 std::string finite(const std::string& text);
 
-/// The name of a PNG file.
+/// The name of a PNG or an SVG file.
 std::string png_name(const std::string& text);
+std::string svg_name(const std::string& text);
 
 std::string not_empty(const std::string& text);
 

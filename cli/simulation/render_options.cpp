@@ -92,7 +92,7 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
       ->check(finite_and_positive)
       ->capture_default_str();
   verb.add_option("--pitch-deg", a.pitch_deg, "camera pitch, degrees; positive is down")
-      ->check(finite)
+      ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   verb.add_option("--seed", a.seed, "random seed of appearance, noise and poses")
       ->capture_default_str();

@@ -220,7 +220,7 @@ void add_simulate(CLI::App& app, Session& session) {
                    "to which their own heights are added (0 for those of drive --truth)")
       ->capture_default_str();
   verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
-      ->check(finite)
+      ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   add_source_options(*verb, o->sources);
   verb->add_option(

@@ -290,7 +290,7 @@ void add_world(CLI::App& app, Session& session) {
   info_verb->add_option("--height-m", i->eye_height_m, "height of the robot's camera, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
-  info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
+  info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route")->check(svg_name);
   check_files_written(*info_verb, {"--plan"});
   info_verb->callback([i, &session] { session.action = [=, &session] { info(*i, session); }; });
 
@@ -310,7 +310,7 @@ void add_world(CLI::App& app, Session& session) {
                               "vernier world route workshop -o my.world.toml --plan route.svg");
   router->add_option("world", r->world, "world file, or a shipped name")->required();
   router->add_option("-o,--output", r->output, "world file with the route")->required();
-  router->add_option("--plan", r->plan, "SVG of the floor plan with the route");
+  router->add_option("--plan", r->plan, "SVG of the floor plan with the route")->check(svg_name);
   router->add_option("--height-m", r->eye_height_m, "height of the robot's camera, metres")
       ->check(finite_and_positive)
       ->capture_default_str();

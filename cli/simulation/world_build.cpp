@@ -371,7 +371,7 @@ void add_world_build(CLI::App& world, Session& session) {
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   verb->add_option("--lines", o->lines, "CSV of the lines: sightings and covariance of both ends");
-  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
+  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route")->check(svg_name);
   verb->add_option("--name", o->name, "name of the world");
   verb->add_option("-o,--output", o->output, "world file")->required();
   check_files_written(*verb, {"--output", "--lines", "--plan"});

@@ -173,6 +173,10 @@ void run(ImportArguments arguments, Session& session) {
   WorldDescription& description = imported.world;
   description.name = arguments.name.empty() ? std::filesystem::path(arguments.file).stem().string()
                                             : arguments.name;
+  if (!arguments.selection.leave_out.empty() && mesh.parts_left_out == 0) {
+    session.warn(fmt::format("{}: no part has {} in its name, nothing is left out", arguments.file,
+                             fmt::join(arguments.selection.leave_out, " or ")));
+  }
   const bool is_open = description.loose.surfaces_m.empty();
   if (is_open) {
     session.warn(arguments.file + ": holds lines only; without surfaces nothing hides anything");
@@ -350,7 +354,7 @@ void add_world_import(CLI::App& world, Session& session) {
   verb->add_option("--height-m", o->eye_height_m, "height of the robot's camera, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
+  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route")->check(svg_name);
   check_files_written(*verb, {"--output", "--plan"});
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

@@ -264,19 +264,18 @@ WorldDescription read_tables_and_rows(const std::string& text, const std::string
 }  // namespace
 
 WorldDescription parse_world(const std::string& text, const std::string& place) {
+  const std::string written = small_letters(std::filesystem::path(place).extension().string());
+  for (const char* ending : {".obj", ".ply", ".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb",
+                             ".stl", ".fbx", ".3ds"}) {
+    if (written != ending) continue;
+    throw Error(place, "is a mesh, not a world file", "import it first: vernier world import");
+  }
   WorldDescription world = read_tables_and_rows(text, place);
   if (const auto fault = floor_error(world)) throw Error(place, fault->fault, fault->remedy);
   return world;
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {
-  const std::string written = small_letters(file.extension().string());
-  for (const char* ending : {".obj", ".ply", ".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb",
-                             ".stl", ".fbx", ".3ds"}) {
-    if (written != ending) continue;
-    throw Error(file.string(), "is a mesh, not a world file",
-                "import it first: vernier world import");
-  }
   return parse_world(read_whole(file), file.string());
 }
 

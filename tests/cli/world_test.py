@@ -99,8 +99,9 @@ class World(verb_calls.ProgramCase):
     def test_what_is_read_is_not_overwritten(self):
         lines = '0 0 0 4 0 0\n4 0 0 4 3 0\n4 3 0 0 3 0\n0 3 0 0 0 0\n0 0 0 0 0 2.5\n'
         (self.folder / 'l.txt').write_text(lines)
-        for words in (('-o', 'l.txt'), ('-o', 'w.toml', '--plan', 'l.txt')):
-            self.assertIn('would be overwritten', self.refused('import', 'l.txt', *words))
+        for words, said in ((('-o', 'l.txt'), 'would be overwritten'),
+                            (('-o', 'w.toml', '--plan', 'l.txt'), 'does not end in .svg')):
+            self.assertIn(said, self.refused('import', 'l.txt', *words))
         self.assertEqual((self.folder / 'l.txt').read_text(), lines)
         self.assertFalse((self.folder / 'w.toml').exists())
         self.assertIn('--height-m', self.refused('sets', 'workshop', '-o', 'w.toml', '--height-m', 99))

@@ -252,10 +252,11 @@ std::string calibrations_text(const StudyResults& results) {
   for (const CellResult& cell : results.cells) {
     if (!cell.calibrations) continue;
     const CalibrationRecord& c = *cell.calibrations;
-    const CalibrationSettings& how = *cell.cell.told.calibration;
-    std::string line =
-        fmt::format("calibrations from {}: {} of {} failed, {} more are doubted",
-                    counted(how.views, "view"), c.failed, c.calibrations, c.doubtful);
+    const ToldSettings& told = cell.cell.told;
+    std::string line = fmt::format("calibrations from {}{}: {} of {} failed, {} more are doubted",
+                                   counted(told.calibration->views, "view"),
+                                   told.model.empty() ? "" : " as " + told.model, c.failed,
+                                   c.calibrations, c.doubtful);
     if (std::isfinite(c.depth_error_m)) {
       line += fmt::format("; depth at {:g} m at psi_c = 1: rms error {:.3g} m, stated {:.3g} m",
                           c.range_m, c.depth_error_m, c.depth_sd_m);

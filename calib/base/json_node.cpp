@@ -5,8 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
 
 #include "calib/base/json_whole.h"
+#include "calib/base/nearest_word.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -69,6 +73,16 @@ Eigen::MatrixXd JsonNode::matrix() const {
     m.row(i) = row.transpose();
   }
   return m;
+}
+
+void check_spelling(const JsonNode& node, const std::vector<std::string_view>& known) {
+  if (!node.json().is_object()) return;
+  for (const auto& [key, value] : node.json().items()) {
+    if (const auto meant = misspelt_key(key, known); meant && !node.has(*meant)) {
+      throw Error(node.place(), "has an unknown key " + in_quotes(key),
+                  "did you mean \"" + *meant + "\"?");
+    }
+  }
 }
 
 }  // namespace vernier::internal

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace vernier::internal {
 
@@ -39,5 +41,9 @@ class JsonNode {
   const nlohmann::ordered_json& json_;
   std::string place_;
 };
+
+/// Throws Error for a key that is nearly one of the known (misspelt_key) which is not there; others
+/// are passed over.
+void check_spelling(const JsonNode& node, const std::vector<std::string_view>& known);
 
 }  // namespace vernier::internal

@@ -63,6 +63,20 @@ Eigen::Vector3d rectified_shift(const RosCameraInfo& info, const std::string& pl
   return {P(0, 3) / P(0, 0), P(1, 3) / P(1, 1), 0};
 }
 
+/// Binning and a region of interest.
+std::vector<std::string> not_applied(const YamlNode& root) {
+  std::vector<std::string> keys;
+  const auto add = [&](const YamlNode& node, const char* key, double most) {
+    if (node.has(key) && node.at(key).number() > most) keys.push_back(node.at(key).place());
+  };
+  add(root, "binning_x", 1);
+  add(root, "binning_y", 1);
+  if (root.has("roi")) {
+    for (const char* key : {"x_offset", "y_offset", "width", "height"}) add(root.at("roi"), key, 0);
+  }
+  return keys;
+}
+
 std::string array_text(const char* key, Eigen::Index rows, Eigen::Index cols, std::string data) {
   return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: [{}]\n", key, rows, cols, data);
 }
@@ -90,6 +104,7 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
   if (root.has("projection_matrix") || root.has("P") || root.has("p")) {
     info.P = root.at_any({"projection_matrix", "P", "p"}).matrix(3, 4);
   }
+  info.not_applied = not_applied(root);
   return info;
 }
 
@@ -119,7 +134,13 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
     cameras.push_back({infos[1].camera,
                        {R_right_rectified * infos[0].R_rectified_camera, R_right_rectified * t}});
   }
-  return {rig_of(std::move(cameras)), {}};
+  ImportedRig imported{rig_of(std::move(cameras)), {}};
+  for (const RosCameraInfo& info : infos) {
+    for (const std::string& key : info.not_applied) {
+      imported.notes.push_back(key + " is ignored: the rig is that of whole images");
+    }
+  }
+  return imported;
 }
 
 ExportedFile format_ros_camera_info(const RosCameraInfo& info) {

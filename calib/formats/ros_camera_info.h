@@ -24,6 +24,9 @@ struct RosCameraInfo {
   Camera camera;
   Eigen::Matrix3d R_rectified_camera = Eigen::Matrix3d::Identity();
   Eigen::Matrix<double, 3, 4> P = Eigen::Matrix<double, 3, 4>::Zero();
+  /// Keys by which the images that are published are a part of those of the camera, or reduced: the
+  /// intrinsics are those of the whole.
+  std::vector<std::string> not_applied;
 };
 
 RosCameraInfo parse_ros_camera_info(const std::string& text,

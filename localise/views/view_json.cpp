@@ -15,7 +15,6 @@
 
 #include "calib/base/all_within.h"
 #include "calib/base/json_node.h"
-#include "calib/base/nearest_word.h"
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -31,9 +30,9 @@ namespace vernier::localise::internal {
 
 using stereo::ImageSegment;
 using stereo::StereoSegment;
+using vernier::internal::check_spelling;
 using vernier::internal::in_quotes;
 using vernier::internal::JsonNode;
-using vernier::internal::misspelt_key;
 using vernier::internal::rig_json::cameras_json;
 using vernier::internal::rig_json::parse_cameras;
 
@@ -252,16 +251,6 @@ double parse_angle(const JsonNode& node) {
 Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
 }  // namespace
-
-void check_spelling(const JsonNode& node, const std::vector<std::string_view>& known) {
-  if (!node.json().is_object()) return;
-  for (const auto& [key, value] : node.json().items()) {
-    if (const auto meant = misspelt_key(key, known); meant && !node.has(*meant)) {
-      throw Error(node.place(), "has an unknown key " + in_quotes(key),
-                  "did you mean \"" + *meant + "\"?");
-    }
-  }
-}
 
 Json pose_json(const Pose2D& pose) {
   return {pose.x_m, pose.y_m, std::remainder(pose.heading_rad, 2 * std::numbers::pi)};

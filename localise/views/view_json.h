@@ -18,11 +18,6 @@ namespace vernier::localise::internal {
 
 using Json = nlohmann::ordered_json;
 
-/// Throws Error for a key that is nearly one of the known (misspelt_key) which is not there; others
-/// are passed over.
-void check_spelling(const vernier::internal::JsonNode& node,
-                    const std::vector<std::string_view>& known);
-
 /// [x_m, y_m, heading_rad]
 Json pose_json(const Pose2D& pose);
 /// Throws Error for values beyond 1e6 m or a turn.

@@ -137,6 +137,7 @@ void apply_answer(const JsonNode& answer, const Rig& rig, SensedView& view) {
   std::size_t added = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const JsonNode node = edges.at(i);
+    check_spelling(node, {"id", "left_px", "right_px", "in_stereo"});
     SensedEdge edge;
     if (node.has("id") && !node.at("id").json().is_null()) {
       const Json& id = node.at("id").json();

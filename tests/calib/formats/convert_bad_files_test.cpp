@@ -334,6 +334,17 @@ TEST(ConvertBadFiles, RosPairsWithoutABaselineAndMessages) {
               read_ros_camera_info({file, file});
             }).find("has no baseline"),
             std::string::npos);
+  // of images that are reduced, or a part
+  const auto reduced = folder.write("reduced.yaml", format_ros_camera_info(info).text +
+                                                        "binning_x: 2\nbinning_y: 1\nroi:\n"
+                                                        "  x_offset: 0\n  y_offset: 0\n"
+                                                        "  height: 100\n  width: 0\n");
+  const std::vector<std::string> notes = read_ros_camera_info({reduced}).notes;
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_NE(notes[0].find("binning_x is ignored: the rig is that of whole images"),
+            std::string::npos)
+      << notes[0];
+  EXPECT_NE(notes[1].find("roi.height is ignored"), std::string::npos) << notes[1];
   // the message itself, as `rostopic echo` and `ros2 topic echo` print it
   const std::string end = "[500, 0, 320, 0, 500, 240, 0, 0, 1]\n";
   for (const char* keys : {"DKRP", "dkrp"}) {

@@ -16,8 +16,8 @@ namespace vernier::internal {
 std::string read_image_bytes(const std::filesystem::path& file);
 
 /// The decoded pixels, with the flags of cv::imread, as the sensor had them: Exif's orientation
-/// does not turn them, since the lens does not turn with it. Throws Error(file) if it is not an
-/// image.
+/// does not turn them (but for TIFF, whose decoder turns), since the lens does not turn with it.
+/// Throws Error(file) if it is not an image.
 cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::path& file);
 
 /// The bytes of a PNG file of 8 or 16 bits, with the options of cv::imwrite.

@@ -162,7 +162,9 @@ std::vector<const toml::table*> TomlReader::tables(const toml::table& root, cons
 std::int64_t TomlReader::integer(const toml::node& node, const std::string& what) const {
   if (!node.is_integer()) {
     fail(node, what + " is not a whole number",
-         node.is_string() ? "write it without quotes" : "write it without a decimal point");
+         node.is_floating_point() ? "write it without a decimal point"
+         : node.is_string()       ? "write a number, without quotes"
+                                  : "write a number");
   }
   return node.as_integer()->get();
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <new>
-#include <utility>
 
 #include "calib/base/shown_text.h"
 #include "calib/base/utf8.h"
@@ -63,10 +62,9 @@ class YamlParser {
       if (next.event.type != YAML_DOCUMENT_START_EVENT) continue;
       YamlEvent first;
       read(first);
-      YamlValue read_value = value(first, 0);
       if (!found) {
-        root = std::move(read_value);
-      } else if (read_value.kind != YamlValue::Kind::null) {
+        root = value(first, 0);
+      } else if (first.event.type != YAML_SCALAR_EVENT || !first.is_null()) {
         fail(next.line(), "a second document begins here", "give one document a file");
       }
       found = true;

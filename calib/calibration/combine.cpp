@@ -201,26 +201,26 @@ void add_warnings(const std::vector<CombineInput>& inputs, double min_p, Combina
           summary.trust_warnings.push_back(input.name + ": " + trust_warning);
       }
     }
-    const bool is_compared = i > 0 && input.agreement.dof > 0;
-    if (input.used && !(is_compared && input.agreement.p_value < min_p)) {
+    const double p = i > 0 ? input.agreement.p_value : 1;
+    if (input.used && !(p < min_p)) {
       constexpr double low_p = 0.01;
-      if (is_compared && input.agreement.p_value < low_p) {
-        summary.warnings.push_back(
-            fmt::format("{} is barely consistent with the previous inputs (p {:.1g})", input.name,
-                        input.agreement.p_value));
+      if (p < low_p) {
+        summary.warnings.push_back(fmt::format(
+            "{} is barely consistent with the previous inputs (p {:.1g})", input.name, p));
       }
       continue;
     }
     if (input.agreement.dof == 0) {
-      summary.trust_warnings.push_back(input.name +
-                                       " was excluded: " + input.agreement.description);
+      summary.trust_warnings.push_back(
+          fmt::format("{} was {}: {}", input.name,
+                      input.used ? "kept, though it cannot be compared" : "excluded",
+                      input.agreement.description));
       continue;
     }
     summary.trust_warnings.push_back(
         fmt::format("{} is inconsistent with the previous inputs (chi² {:.1f} for {}, p {:.1g}) "
-                    "and was {}: the "
-                    "rig has changed, or one of them understates its uncertainty",
-                    input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value,
+                    "and was {}: the rig has changed, or one of them understates its uncertainty",
+                    input.name, input.agreement.chi2, input.agreement.dof, p,
                     input.used ? "kept" : "excluded"));
   }
 }

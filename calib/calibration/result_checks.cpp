@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <variant>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/calibration/lens_field.h"
 #include "calib/calibration/residual_diagnosis.h"
 #include "calib/camera.h"
@@ -24,6 +26,7 @@
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/statistics/distributions.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier::internal {
 namespace {
@@ -156,20 +159,25 @@ std::optional<std::string> held_conflict_warning(const RigPrior& prior,
   for (Eigen::Index i = 0; i < prior.information.rows(); ++i) {
     if (prior.information(i, i) > 0) informed.push_back(i);
   }
-  const Eigen::MatrixXd of_informed = prior.information(informed, informed).inverse();
+  const ScaledEigen of(prior.information(informed, informed));
+  constexpr double least_share = 1e-12;  // else the covariance has no digits
+  if (!(of.values.minCoeff() > least_share * of.values.maxCoeff())) return {};
+  const Eigen::MatrixXd root = of.deviations.cwiseInverse().asDiagonal() * of.directions *
+                               of.values.cwiseSqrt().cwiseInverse().asDiagonal();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(at.delta.size(), at.delta.size());
-  covariance(informed, informed) = of_informed;
+  covariance(informed, informed) = root * root.transpose();
   const Eigen::MatrixXd of_held = covariance(held, held);
   const Eigen::VectorXd offset = at.delta(held);
-  const double p = chi_squared_survival(offset.dot(of_held.inverse() * offset),
+  const double p = chi_squared_survival(offset.dot(of_held.ldlt().solve(offset)),
                                         static_cast<double>(held.size()));
   if (!(p < least_p)) return {};
   Eigen::Index most = 0;
   const double sigmas = (offset.array().abs() / of_held.diagonal().array().sqrt()).maxCoeff(&most);
   return fmt::format(
       "what is held and the prior disagree: {} is held {:.1f} of its prior's standard deviations "
-      "away (p = {:.1e}); check the value, or leave it free",
-      names[held[most]], sigmas, p);
+      "away (p = {:.1e} over {}); check the value, or leave it free",
+      names[held[most]], sigmas, p,
+      counted(static_cast<std::int64_t>(held.size()), "held parameter"));
 }
 
 }  // namespace
@@ -190,11 +198,13 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   std::vector<std::string> names;
   names.reserve(known.size());
   for (const Eigen::Index i : known) names.push_back(all_names[i]);
-  const Eigen::VectorXd offset = at.delta(known);
+  const Eigen::MatrixXd before = prior.information(known, known).inverse();
+  Eigen::VectorXd offset = at.delta(known);
+  // What is held moves the prior's mean of the rest.
+  if (!held.empty()) offset += before * prior.information(known, held) * at.delta(held);
   const auto in_prior = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
     return (at.by_rig * C * at.by_rig.transpose())(known, known);
   };
-  const Eigen::MatrixXd before = prior.information(known, known).inverse();
   PriorConsistency agreement;
   try {
     agreement = prior_consistency(

@@ -52,6 +52,19 @@ OpenCvIntrinsics read_intrinsics(const YamlNode& node) {
   return in;
 }
 
+/// Names of topics have no blanks, and may have parts.
+std::string topic_of(const Camera& camera) {
+  const std::size_t begin = camera.name.find_first_not_of('/');
+  const bool plain = begin != std::string::npos &&
+                     std::all_of(camera.name.begin(), camera.name.end(),
+                                 [](unsigned char c) { return c > 0x20 && c != 0x7f; });
+  if (!plain) {
+    throw Error(fmt::format("camera \"{}\"", camera.name), "its name is none of a ROS topic",
+                "rename the cameras, as convert --names left,right does");
+  }
+  return "/" + camera.name.substr(begin) + "/image_raw";
+}
+
 std::string camera_text(const Camera& camera, const std::string& others) {
   const OpenCvIntrinsics in = opencv_intrinsics(camera);
   const bool none = in.coefficients.empty();
@@ -64,8 +77,7 @@ std::string camera_text(const Camera& camera, const std::string& others) {
       none         ? "none"
       : in.fisheye ? "equidistant"
                    : "radtan",
-      yaml_list(k), camera.size_px[0], camera.size_px[1],
-      yaml_text("/" + camera.name + "/image_raw"));
+      yaml_list(k), camera.size_px[0], camera.size_px[1], yaml_text(topic_of(camera)));
 }
 
 std::string step_text(const Pose& T) {

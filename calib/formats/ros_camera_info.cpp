@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
@@ -63,17 +66,23 @@ Eigen::Vector3d rectified_shift(const RosCameraInfo& info, const std::string& pl
   return {P(0, 3) / P(0, 0), P(1, 3) / P(1, 1), 0};
 }
 
-/// Binning and a region of interest.
-std::vector<std::string> not_applied(const YamlNode& root) {
+/// Binning and a region of interest that is not the whole image.
+std::vector<std::string> not_applied(const YamlNode& root, const Eigen::Vector2i& size_px) {
   std::vector<std::string> keys;
-  const auto add = [&](const YamlNode& node, const char* key, double most) {
-    if (node.has(key) && node.at(key).number() > most) keys.push_back(node.at(key).place());
+  const auto add = [&](const YamlNode& node, const char* key, double above, double below) {
+    if (!node.has(key)) return;
+    const double value = node.at(key).number();
+    if (value > above && value < below) keys.push_back(node.at(key).place());
   };
-  add(root, "binning_x", 1);
-  add(root, "binning_y", 1);
-  if (root.has("roi")) {
-    for (const char* key : {"x_offset", "y_offset", "width", "height"}) add(root.at("roi"), key, 0);
-  }
+  constexpr double any = std::numeric_limits<double>::infinity();
+  add(root, "binning_x", 1, any);
+  add(root, "binning_y", 1, any);
+  if (!root.has("roi")) return keys;
+  const YamlNode roi = root.at("roi");
+  add(roi, "x_offset", 0, any);
+  add(roi, "y_offset", 0, any);
+  add(roi, "width", 0, size_px.x());
+  add(roi, "height", 0, size_px.y());
   return keys;
 }
 
@@ -104,7 +113,7 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
   if (root.has("projection_matrix") || root.has("P") || root.has("p")) {
     info.P = root.at_any({"projection_matrix", "P", "p"}).matrix(3, 4);
   }
-  info.not_applied = not_applied(root);
+  info.not_applied = not_applied(root, size);
   return info;
 }
 

@@ -222,6 +222,9 @@ BoardState fitted_afresh(const BoardObservations& observations,
   how.board_shape = how.motion = how.baseline_motion = how.board_aspect = false;
   const RigEstimate estimate = calibrate(observations, how);
   const CalibrationEvidence& evidence = *estimate.evidence;
+  if (evidence.frames != frames_of(observations)) {
+    throw Error("model comparison", "frames lie beyond its field", "");
+  }
   return determined_minimum(
       observations, {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m},
       problem);
@@ -240,12 +243,14 @@ ModelScore score_of(const std::vector<CameraModel>& richer,
   const ReprojectionProblem problem =
       problem_for(options, start.rig, estimate.calibration->pixel_sigma_px);
   BoardState fitted;
+  HeldOut errors;
   try {
     fitted = determined_minimum(observations, start, problem);
+    errors = held_out_errors(observations, fitted, problem);
   } catch (const Error&) {
     fitted = fitted_afresh(observations, richer, options, problem);
+    errors = held_out_errors(observations, fitted, problem);
   }
-  const HeldOut errors = held_out_errors(observations, fitted, problem);
   ModelScore score;
   score.models = richer;
   score.name = name_of(richer);
@@ -301,7 +306,7 @@ ModelComparison compare_models(const RigEstimate& estimate,
     try {
       comparison.richer.push_back(score_of(richer, estimate, options, observations, state, in_use));
     } catch (const Error& error) {  // the views do not determine this model, nor a richer one
-      comparison.left_out = name_of(richer) + ": " + error.what();
+      comparison.left_out = name_of(richer) + ", " + error.fault();
       break;
     }
   }

@@ -41,7 +41,7 @@ struct ModelComparison {
 };
 
 /// `estimate` is calibrate(observations, options)'s result. If nothing can be compared (no richer
-/// model, fewer than six frames, or a model in use that cannot be calibrated without some group),
+/// model, fewer than six frames, a richer or the model in use that some views do not determine),
 /// there are no scores and no warnings, and `not_compared` gives the reason. Throws Error for an
 /// estimate without evidence, covariance or summary.
 ModelComparison compare_models(const RigEstimate& estimate,

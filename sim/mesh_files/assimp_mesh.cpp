@@ -39,7 +39,10 @@ bool is_turned(const std::string& ending) {
 
 /// assimp takes what is left of an IFC file that was cut short: its last lines place the parts.
 void check_ifc_is_whole(const std::filesystem::path& file) {
-  if (vernier::internal::read_whole(file).rfind("END-ISO-10303-21") != std::string::npos) return;
+  constexpr std::size_t last_bytes = 4096;
+  const std::string text = vernier::internal::read_whole(file);
+  const std::size_t from = text.size() - std::min(text.size(), last_bytes);
+  if (text.find("END-ISO-10303-21", from) != std::string::npos) return;
   throw Error(file.string(), "is cut short: no line END-ISO-10303-21 ends it",
               "copy or export it again");
 }

@@ -60,6 +60,10 @@ struct Advice {
 
 /// What a result code means to the user; its words are SQLite's own if there is none here.
 Advice advice(int code) {
+  constexpr Advice no_memory{"out of memory", "run it where there is more"};
+  if (code == SQLITE_IOERR_NOMEM || code == SQLITE_IOERR_SHMMAP || code == SQLITE_IOERR_MMAP) {
+    return no_memory;
+  }
   switch (code & 0xff) {
     case SQLITE_FULL:
       return {"cannot be written: no space is left on the disk", again};
@@ -79,7 +83,7 @@ Advice advice(int code) {
               "check that the disk has space and works, then run the "
               "same command again"};
     case SQLITE_NOMEM:
-      return {"out of memory", "run it where there is more"};
+      return no_memory;
     default:
       return {nullptr, "delete it and run the study again: its blocks are then computed again"};
   }

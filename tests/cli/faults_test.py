@@ -266,7 +266,9 @@ class Names(FaultCase):
         needed = subprocess.run(['ldd', cli_test.PROGRAM], capture_output=True, text=True,
                                 check=True).stdout
         names = re.findall(r'^\s*(lib\S+) => ', needed, re.MULTILINE)
-        self.assertIn('libsqlite3.so.0', names)
+        self.assertTrue(names)
+        if any(name.startswith('libvernier') for name in names):
+            self.skipTest('built with shared libraries, which CMake finds by a folder of the build')
         for name in names:
             (self.folder / name).write_bytes(b'')
         done = self.run_in_folder('--version')

@@ -109,6 +109,11 @@ class Result(Corners):
                       json.loads((self.folder / 'rig.json').read_text())['calibration']['doubts'][0])
         self.calibrate('--know', 'right.tx_m=-0.0600,0.0010')
 
+    def test_what_is_held_is_not_known_too(self):
+        done = self.calibrate('--hold', 'right.tx_m=-0.083', '--know', 'right.tx_m=-0.083,0.001',
+                              code=2)
+        self.assertIn('right.tx_m: is also given a value with a standard deviation', done.stderr)
+
     def test_few_views_and_models_that_are_not_compared(self):
         said = self.calibrate(frames=5).stderr
         self.assertIn('only 5 views: the standard deviations themselves are uncertain', said)

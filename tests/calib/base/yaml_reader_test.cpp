@@ -63,6 +63,8 @@ TEST(YamlReader, RefusesAliasesAndSeveralDocuments) {
             "a.yaml:2: aliases are not supported; write the value itself");
   EXPECT_EQ(yaml_complaint("a: 1\n---\nb: 1\n"),
             "a.yaml:2: a second document begins here; give one document a file");
+  EXPECT_EQ(yaml_complaint("a: 1\n---\nb: *x\n"),
+            "a.yaml:2: a second document begins here; give one document a file");
   EXPECT_EQ(yaml_complaint("a: 1\n---\n"), "");  // as ROS's "topic echo" ends a message
   EXPECT_EQ(yaml_complaint("%YAML 1.1\n%TAG !a! b\n---\na: 1\n"),
             "a.yaml:2: directives of tags are not supported; remove the line");

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,24 @@ TEST(CombineEvidence, BendsOfDifferentBoardsAreSaidToBeTakenAsKnown) {
   const std::vector<std::string>& said = both.estimate.calibration->warnings;
   EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& warning) {
     return warning.find("different boards") != std::string::npos;
+  }));
+}
+
+TEST(CombineEvidence, WhatDisagreesAndIsKeptIsDoubted) {
+  const Rig rig = test::stereo_rig();
+  Rig knocked = rig;
+  knocked.T_camera_first[1].t.x() *= 1.05;
+  const CalibrationOptions how{.pixel_sigma_px = 0.2, .check_input = false};
+  const auto of = [&](const Rig& truth, std::uint64_t seed) {
+    return calibrate(simulate_board(truth, {}, {.seed = seed, .frames = 8}).observations, how);
+  };
+  const Combination both = combine({{"before", of(rig, 34), {}}, {"after", of(knocked, 35), {}}},
+                                   {.keep_disagreeing = true});
+  ASSERT_TRUE(both.inputs[1].used);
+  const std::vector<std::string>& said = both.joint.estimate.calibration->trust_warnings;
+  EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& warning) {
+    return warning.starts_with("after is inconsistent with the previous inputs") &&
+           warning.find("and was kept") != std::string::npos;
   }));
 }
 

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "calib/camera.h"
 #include "calib/lens_models.h"
@@ -51,6 +54,27 @@ TEST(PriorConflictWarning, NamesWhatIsHeldFarFromThePrior) {
   EXPECT_EQ(said(0.0038), "");  // p = 1.4e-4
   EXPECT_EQ(said(0.01).find("what is held and the prior disagree: right.tx_m is held 10.0"), 0u)
       << said(0.01);
+}
+
+// Of a correlated prior: what is held moves what it says of the rest.
+TEST(PriorConflictWarning, ExpectsTheRestWhereWhatIsHeldPutsIt) {
+  const Rig mean = test::stereo_rig(OpenCv5{});
+  const std::vector<std::string> names = parameter_names(mean);
+  const auto places = static_cast<Eigen::Index>(names.size());
+  const auto f = std::find(names.begin(), names.end(), "left.f_px") - names.begin();
+  const auto k1 = std::find(names.begin(), names.end(), "left.k1") - names.begin();
+  RigPrior prior = rig_prior(
+      mean, {{"left.f_px", mean.cameras[0].f_px(), 1}, {"left.k1", parameters(mean)[k1], 0.01}});
+  prior.information(f, k1) = prior.information(k1, f) = 0.99 * 100;  // correlated by -0.99
+  Rig rig = mean;
+  rig.cameras[0].parameters[0] += 5;  // held, 0.7 of its standard deviations
+  rig.cameras[0].parameters[core_parameter_count] -= 5 * 0.99 * 0.01;
+  Eigen::MatrixXd small = Eigen::MatrixXd::Zero(places, places);
+  small(k1, k1) = 1e-10;
+  EXPECT_EQ(prior_conflict_warning(prior, rig, small, small, 20).value_or(""), "");
+  rig.cameras[0].parameters[core_parameter_count] += 5 * 0.99 * 0.01;
+  EXPECT_NE(prior_conflict_warning(prior, rig, small, small, 20).value_or("").find("left.k1 moved"),
+            std::string::npos);
 }
 
 TEST(InversionWarnings, NameTheCameraAndTheRegion) {

@@ -303,6 +303,15 @@ TEST(ConvertBadFiles, KalibrChainsAndNames) {
   EXPECT_LT((read.rig.T_camera_first[2].t - rig.T_camera_first[2].t).norm(), 1e-15);
   text = test::replaced(text, "/camera2/image_raw", "/right/image_raw");
   EXPECT_EQ(read_kalibr_camchain(folder.write("c.yaml", text)).rig.cameras[2].name, "cam2");
+  // Names of ROS with parts are topics too; those with blanks are none.
+  Rig named = rig;
+  named.cameras[0].name = "/stereo/left";
+  const std::string topics = kalibr_camchain(named)[0].text;
+  EXPECT_NE(topics.find("/stereo/left/image_raw"), std::string::npos);
+  EXPECT_EQ(topics.find("//"), std::string::npos);
+  named.cameras[0].name = "my left";
+  EXPECT_NE(test::error_message([&] { kalibr_camchain(named); }).find("is none of a ROS topic"),
+            std::string::npos);
 }
 
 TEST(ConvertBadFiles, Ros) {
@@ -345,6 +354,10 @@ TEST(ConvertBadFiles, RosPairsWithoutABaselineAndMessages) {
             std::string::npos)
       << notes[0];
   EXPECT_NE(notes[1].find("roi.height is ignored"), std::string::npos) << notes[1];
+  const auto whole = folder.write("whole.yaml", format_ros_camera_info(info).text +
+                                                    "roi:\n  x_offset: 0\n  y_offset: 0\n"
+                                                    "  height: 480\n  width: 640\n");
+  EXPECT_TRUE(read_ros_camera_info({whole}).notes.empty());
   // the message itself, as `rostopic echo` and `ros2 topic echo` print it
   const std::string end = "[500, 0, 320, 0, 500, 240, 0, 0, 1]\n";
   for (const char* keys : {"DKRP", "dkrp"}) {

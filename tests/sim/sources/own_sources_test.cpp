@@ -195,7 +195,7 @@ TEST(ProgramSource, SurvivesItsProgram) {
       {"say('{}')", "edges"},
       {"say('{\"edges\": 3}')", "nonsense"},
       {"say('{\"edges\": [{\"id\": 1}]}')", "no edge of the view"},
-      {"say('{\"edges\": [{\"lft_px\": [1, 2, 3, 4]}]}')", "did you mean \"left_px\"?"},
+      {"say('{\"edges\": [{\"lft_px\": [1, 2, 3, 4]}]}')", "has an unknown key \"lft_px\""},
       {"say('{\"edges\": [{\"id\": -1}]}')", "no edge of the view"},
       {"say('{\"edges\": [{\"id\": 1e300}]}')", "no edge of the view"},
       {"say({'edges': edges + edges[:1]})", "twice"},

@@ -159,13 +159,10 @@ std::optional<std::string> held_conflict_warning(const RigPrior& prior,
   for (Eigen::Index i = 0; i < prior.information.rows(); ++i) {
     if (prior.information(i, i) > 0) informed.push_back(i);
   }
-  const ScaledEigen of(prior.information(informed, informed));
-  constexpr double least_share = 1e-12;  // else the covariance has no digits
-  if (!(of.values.minCoeff() > least_share * of.values.maxCoeff())) return {};
-  const Eigen::MatrixXd root = of.deviations.cwiseInverse().asDiagonal() * of.directions *
-                               of.values.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd white = ScaledRoot(prior.information(informed, informed)).white;
+  if (white.rows() < white.cols()) return {};  // its covariance has no digits
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(at.delta.size(), at.delta.size());
-  covariance(informed, informed) = root * root.transpose();
+  covariance(informed, informed) = white.transpose() * white;
   const Eigen::MatrixXd of_held = covariance(held, held);
   const Eigen::VectorXd offset = at.delta(held);
   const double p = chi_squared_survival(offset.dot(of_held.ldlt().solve(offset)),
